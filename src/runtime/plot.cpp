@@ -111,6 +111,10 @@ PlotResult drawTuning(const std::string& folder) {
   return {(fs::path(folder) / "convergence.png").string(), ""};
 }
 
+PlotResult drawCommissioning(const std::string& folder) {
+  return {"", drawWith("commissioning", {folder})};
+}
+
 PlotResult drawReproduction(const std::string& folder) {
   return {"", drawWith("reproduce", {folder})};
 }

@@ -28,6 +28,8 @@ PlotResult drawComparison(const std::vector<std::string>& folders, const std::st
 PlotResult drawStability(const std::string& folder);
 /// convergence.png in a folder with a tuning.json or compare.json.
 PlotResult drawTuning(const std::string& folder);
+/// test.png and model.png in a folder of a commissioning whose plant was watched.
+PlotResult drawCommissioning(const std::string& folder);
 /// distributions.png in a folder with a study.json.
 PlotResult drawStudy(const std::string& folder);
 

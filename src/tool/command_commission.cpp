@@ -92,6 +92,12 @@ void print(const Json& all, bool json) {
   }
 }
 
+void draw(const CommissionArguments& a, const std::string& folder) {
+  if (a.no_plot || !fs::exists(fs::path(folder) / "watch.csv")) return;
+  const PlotResult plot = drawCommissioning(folder);
+  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
+}
+
 }  // namespace
 
 int commission(const CommissionArguments& a) {
@@ -106,6 +112,7 @@ int commission(const CommissionArguments& a) {
           if (!a.json) std::cerr << stage << ": " << text << "\n";
         });
     print(Json::parse(figures), a.json);
+    draw(a, folder);
     return 0;
   }
   CommissioningOptions options;
@@ -121,6 +128,7 @@ int commission(const CommissionArguments& a) {
   if (!a.again.empty()) commissioning.undo(commissioningStage(a.again, "--again"));
   if (!a.undo) commissioning.run(commissioningStage(a.until, "--until"));
   print(commissioning.figures(), a.json);
+  draw(a, folder);
   return 0;
 }
 

@@ -1,11 +1,11 @@
-"""Pictures of what fmbpc found: run, model, stability, study, tuning, reproduction, bsm1.
+"""Pictures of what fmbpc found: run, model, stability, study, tuning, commissioning, reproduction, bsm1.
 
     python3 -m fmbpc.plots KIND DIR [DIR ...]        as the tool draws them; KIND --help
     fmbpc.plots.run_picture([run, other])            a matplotlib figure of runs or their folders
 """
 from fmbpc.plots.table import read_table
 
-KINDS = ("run", "model", "stability", "study", "tuning", "reproduce", "bsm1")
+KINDS = ("run", "model", "stability", "study", "tuning", "commissioning", "reproduce", "bsm1")
 
 __all__ = ["KINDS", "read_table", "run_picture"]
 

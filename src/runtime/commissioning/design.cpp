@@ -136,7 +136,7 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
 // ---- loop files
 
 /// The plant's loop file with another control, as text that stands by itself.
-std::string rewritten(const CommissioningBrief& brief, const std::string& head,
+std::string rewritten(const CommissioningBrief& brief, const std::string& what,
                       const std::vector<std::pair<std::string, std::string>>& sections) {
   YAML::Node root = detached(loadYaml(brief.loop.resolved, brief.loop.name));
   for (const char* key : {"controller", "clp", "model", "guard", "estimator", "standstill"})
@@ -144,9 +144,10 @@ std::string rewritten(const CommissioningBrief& brief, const std::string& head,
   for (const auto& [key, text] : sections) root[key] = detached(loadYaml(text, "design: " + key));
   root["actuator"]["move_upper"] =
       detached(loadYaml(mapOf(brief.loop.plant_info.inputs, brief.move), "design: moves"));
+  root["title"] = brief.loop.title + ", commissioned " + what;
   YAML::Emitter out;
   out << root;
-  return head + out.c_str() + "\n";
+  return std::string(out.c_str()) + "\n";
 }
 
 struct PiSetting {
@@ -355,7 +356,7 @@ class Designer {
 
   std::string piText(const Vector& x) const {
     return rewritten(
-        brief_, "# PI of the commissioning of " + brief_.loop.name + ".\n",
+        brief_, "PI",
         {{"controller", "{type: pi, loops: " + piLoops(brief_, outline_, piOf(x)) + "}"}});
   }
 
@@ -410,14 +411,13 @@ class Designer {
         << ", input_target: " << mapOf(plant.inputs, modelRest(models_.fits, n_u).inputs);
     c << ", realisation: observer, observer: {noise_std: " << mapOf(plant.outputs, noise)
       << ", disturbance_std: " << mapOf(plant.outputs, walk) << "}}";
-    return rewritten(
-        brief_, "# Law of the commissioning of " + brief_.loop.name + ", on " + model_file_ + ".\n",
-        {{"model", "{file: '" + model_file_ + "'}"},
-         {"controller", c.str()},
-         {"guard",
-          "{pi: {loops: " +
-              piLoops(brief_, outline_, pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) +
-              "}}"}});
+    return rewritten(brief_, "law",
+                     {{"model", "{file: '" + model_file_ + "'}"},
+                      {"controller", c.str()},
+                      {"guard", "{pi: {loops: " +
+                                    piLoops(brief_, outline_,
+                                            pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) +
+                                    "}}"}});
   }
 
   // ---- judging
