@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "config/design_library.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/factory.hpp"
 
@@ -51,7 +52,8 @@ void LoopController::identify(int window) {
 void LoopController::run(const IdentificationJob& job) {
   try {
     const RecordIdentification result =
-        identifyRecord(job.values, job.structure, job.source, job.share);
+        designLibrary("model.identify")
+            .identify_record(job.values, job.structure, job.source, job.share, {});
     const TsModel& model = identifier_->accept(result.found.model);
     if (hooks_.identified) hooks_.identified(model);
     use(&model);
