@@ -16,6 +16,6 @@ Eigen::ColPivHouseholderQR<Matrix> pivotedQrOf(MatrixRef A) {
   return Eigen::ColPivHouseholderQR<Matrix>(A);
 }
 
-Vector solvedByPivotedQr(MatrixRef A, VectorRef b) { return pivotedQrOf(A).solve(b); }
+Vector solvedBy(const Eigen::ColPivHouseholderQR<Matrix>& A, const Vector& b) { return A.solve(b); }
 
 }  // namespace fpc

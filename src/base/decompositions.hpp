@@ -16,6 +16,9 @@ Eigen::SelfAdjointEigenSolver<Matrix> symmetricEigenOf(MatrixRef A,
 Eigen::JacobiSVD<Matrix> svdOf(MatrixRef A, unsigned options = 0);
 Eigen::ColPivHouseholderQR<Matrix> pivotedQrOf(MatrixRef A);
 /// Of A x = b by least squares.
-Vector solvedByPivotedQr(MatrixRef A, VectorRef b);
+Vector solvedBy(const Eigen::ColPivHouseholderQR<Matrix>& A, const Vector& b);
+inline Vector solvedByPivotedQr(MatrixRef A, const Vector& b) {
+  return solvedBy(pivotedQrOf(A), b);
+}
 
 }  // namespace fpc

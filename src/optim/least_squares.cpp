@@ -123,7 +123,7 @@ LeastSquaresSolution LeastSquares::solve(double ridge) {
   if (system.isZero(0.0)) return solution;  // of which Eigen 3.3 makes NaN
   Eigen::ColPivHouseholderQR<Matrix> qr = pivotedQrOf(system);
   qr.setThreshold(kRankTolerance);
-  solution.theta = lengths.cwiseInverse().asDiagonal() * qr.solve(right);
+  solution.theta = lengths.cwiseInverse().asDiagonal() * solvedBy(qr, right);
   return solution;
 }
 
