@@ -26,7 +26,7 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
   requireSimulated(loop);
   const SimulationParams& sim = loop.simulation;
   const DisturbanceParams& params = loop.disturbance;
-  if (params.source == DisturbanceSource::kConstant) return {};
+  if (params.source == DisturbanceSource::kConstant) return sim.disturbance;
   require(sim.samples > 0, loop.name + ": sampling.duration_h",
           "a time > 0 with disturbance.source " + wordOf(params.source) +
               " (an endless run needs constant)");

@@ -9,7 +9,8 @@ namespace fpc {
 void requireSimulated(const LoopFile& loop);
 /// The plant's disturbances, which it takes a plant to know.
 std::vector<Quantity> disturbancesOf(const LoopFile& loop);
-/// The disturbances of the loop on its own samples. @throws InputError naming file, column or
+/// The disturbances of the loop on its own samples; of a constant source those that a caller has
+/// put into loop.simulation, which no file can. @throws InputError naming file, column or
 /// field.
 DisturbanceRecord makeDisturbance(const LoopFile& loop);
 

@@ -14,6 +14,18 @@ using Eigen::Index;
 
 constexpr double kLeastNoise = 1e-6;  // of the variance of d's change: keeps S regular
 
+/// P = A P A', in the order of the whole sums, which most of A's elements, 0, add nothing to.
+void multiplyBothSides(const Matrix& A, Matrix& P, Matrix& PA) {
+  PA.setZero();
+  for (Index k = 0; k < A.cols(); ++k)
+    for (Index j = 0; j < A.rows(); ++j)
+      if (A(j, k) != 0.0) PA.col(j) += A(j, k) * P.col(k);
+  P.setZero();
+  for (Index k = 0; k < A.cols(); ++k)
+    for (Index i = 0; i < A.rows(); ++i)
+      if (A(i, k) != 0.0) P.row(i) += A(i, k) * PA.row(k);
+}
+
 }  // namespace
 
 void ObserverParams::validate(Index n_y) const {
@@ -86,8 +98,7 @@ void DisturbanceObserver::startFrom(VectorRef shortfall) {
 
 void DisturbanceObserver::predict(const Matrix& A) {
   F_.topLeftCorner(n_x_, n_x_) = A;
-  PF_.noalias() = P_.lazyProduct(F_.transpose());
-  P_.noalias() = F_.lazyProduct(PF_);
+  multiplyBothSides(F_, P_, PF_);
   for (Index i = 0; i < n_d_; ++i) P_(n_x_ + i, n_x_ + i) += change()[i] * change()[i];
 }
 
@@ -133,8 +144,7 @@ bool DisturbanceObserver::correct(VectorRef outputs, Eigen::Ref<Vector> state) {
   disturbance_ += correction_.tail(n_d_);
   IKC_.setIdentity();
   for (Index i = 0; i < n_y_; ++i) IKC_.col(rows_[static_cast<std::size_t>(i)]) -= K_.col(i);
-  PF_.noalias() = P_.lazyProduct(IKC_.transpose());
-  P_.noalias() = IKC_.lazyProduct(PF_);
+  multiplyBothSides(IKC_, P_, PF_);
   for (Index i = 0; i < n_y_; ++i)
     for (Index row = 0; row < P_.rows(); ++row)
       for (Index column = 0; column < P_.cols(); ++column)

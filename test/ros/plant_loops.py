@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The loops of a plant in one process give the runs of `fmbpc run --plant` bit for bit, links between them included; what happens to
-one loop (its process killed, its plugin throws, no folder for its record, stopped, replaced) changes no bit of the others."""
+one loop (its process killed, its plugin throws, its disk full) changes no bit of the others; each is stopped and replaced alone."""
 import os
 import pathlib
 import re
@@ -24,16 +24,20 @@ THROWS = {"plugins": ["throws"], "plant": {"type": "throwing"}, "sampling": {"sa
           "controller": {"type": "pi", "loops": [{"input": "u", "output": "x", "kp": 0.1, "ki_per_h": 1}]}}
 
 
-class Launch:
-    """plant.launch on a master of its own."""
+SMALL_DISK = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", 'mount -t tmpfs -o size=64k none "$0" && exec "$@"']  # of FOLDER COMMAND
+ENDLESS = {"loop": "heated_tank", "set": {"sampling.duration_h": 0, "setpoint.schedule": []}}
 
-    def __init__(self, test, plant, out, *arguments):
+
+class Launch:
+    """plant.launch on a master of its own; `small`: a folder on a disk of 64 kB."""
+
+    def __init__(self, test, plant, out, *arguments, small=None):
         port = ring.free_port()
         self.uri = f"http://localhost:{port}"
         environment = {**os.environ, "ROS_MASTER_URI": self.uri, "FMBPC_PLUGIN_PATH": PLUGINS}
         environment.pop("DISPLAY", None)
         self.process = subprocess.Popen(
-            ring.tied(["roslaunch", "-p", port, "fmbpc", "plant.launch", "plant:=" + plant, "out:=" + out, *arguments]),
+            ring.tied([*([*SMALL_DISK, small] if small else []), "roslaunch", "-p", port, "fmbpc", "plant.launch", "plant:=" + plant, "out:=" + out, *arguments]),
             env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         test.addCleanup(ring.killed, self.process)
         self.master = rosgraph.Master("/plant_loops_test", self.uri)
@@ -97,33 +101,40 @@ class PlantLoops(unittest.TestCase):
         self.assertEqual(0, code, text)
         self.same("left", "right")
 
-    def test_a_plugin_that_throws_ends_its_loop_alone(self):
-        good = {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 40}}
-        self.in_process(self.plant({"pace": "lockstep", "loops": {"a": good, "c": good}}))
-        bad = {"loop": self.loop("bad", THROWS)}
-        code, text = Launch(self, self.plant({"pace": "lockstep", "loops": {"a": good, "b": bad, "c": good}}), self.topics).end()
-        self.assertIn("thrown by the plugin", text)
-        self.assertTrue(os.path.isfile(os.path.join(self.topics, "b", "summary.json")), text)  # what it had
-        self.same("a", "c")
+    def test_faults_of_three_loops_change_no_bit_of_the_others(self):
+        """One is killed, the plugin of one throws, the disk of one is full, while the others run. Each of those has a load of its own."""
+        good = {f"good_{i}": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 1000, "disturbance.pattern.seed": i}} for i in range(1, 13)}
+        self.in_process(self.plant({"pace": "lockstep", "loops": good}))
+        small = os.path.join(self.topics, "full")
+        os.makedirs(small)
+        plant = self.plant({"pace": "lockstep", "loops": {
+            **good, "apart": {**ENDLESS, "isolate": True}, "bad": {"loop": self.loop("bad", THROWS)},
+            "full": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 200}}}})  # their names are those that start first
+        launch = Launch(self, plant, self.topics, small=small)
+        os.environ["ROS_MASTER_URI"] = launch.uri
+        ring.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "the isolated loop runs")
+        os.kill(ring.pid("/plant_host_apart", launch.master), signal.SIGKILL)
+        self.assertFalse(all(self.recorded(loop) for loop in good), "the others run")
+        text = launch.end()[1]
+        for words in ("loop apart: its process was ended: Killed", "thrown by the plugin", "full/journal.bin cannot be written: No space left on device"):
+            self.assertIn(words, text)
+        self.assertTrue(self.recorded("bad"), text)  # what it had
+        self.same(*good)
 
-    def test_a_process_that_is_killed_and_a_record_without_room(self):
-        """The isolated loop is killed in its run, another one has no folder for its record; then both are replaced."""
-        good = {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 200}}
-        endless = {"loop": "heated_tank", "set": {"sampling.duration_h": 0, "setpoint.schedule": []}}
-        self.in_process(self.plant({"pace": "lockstep", "loops": {"a": good, "c": good}}))
+    def recorded(self, loop):
+        return os.path.isfile(os.path.join(self.topics, loop, "summary.json"))
+
+    def test_a_killed_loop_and_one_without_a_folder_are_named_and_replaced(self):
         os.makedirs(self.topics)
         pathlib.Path(self.topics, "full").touch()  # no folder can be made there
         plant = self.plant({"pace": "lockstep", "loops": {
-            "a": good, "c": good, "apart": {**endless, "isolate": True},
-            "full": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 1}}}})
+            "apart": {**ENDLESS, "isolate": True}, "full": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 1}}}})
         launch = Launch(self, plant, self.topics, "keep:=true")
         os.environ["ROS_MASTER_URI"] = launch.uri
         ring.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "the isolated loop runs")
         process = ring.pid("/plant_host_apart", launch.master)
         os.kill(process, signal.SIGKILL)
         ring.wait_until(lambda: "killed" in self.state(launch)[1].lower(), "the plant says so")
-        ring.wait_until(lambda: all(os.path.isfile(os.path.join(self.topics, loop, "summary.json")) for loop in "ac"), "records")
-        self.same("a", "c")
         code, words = self.state(launch)
         self.assertEqual("failed", code, words)
         self.assertIn("full", words)
@@ -132,7 +143,7 @@ class PlantLoops(unittest.TestCase):
         self.assertNotEqual(process, ring.pid("/plant_host_apart", launch.master))
         os.unlink(os.path.join(self.topics, "full"))
         self.order(launch, LoopOrderRequest.REPLACE, "full")
-        ring.wait_until(lambda: os.path.isfile(os.path.join(self.topics, "full", "summary.json")), "the record of the replaced loop")
+        ring.wait_until(lambda: self.recorded("full"), "the record of the replaced loop")
         self.order(launch, LoopOrderRequest.STOP, "apart")
         ring.wait_until(lambda: "stopped: apart" in self.state(launch)[1], "the plant says that it is stopped")
         self.assertIn("success: False", self.order(launch, LoopOrderRequest.STOP, "nobody", good=False))

@@ -195,8 +195,8 @@ TEST(Commissioning, AKindThatThePresentControlRefutesGivesWayToAnother) {
 }
 
 /// One element from heat to T, and likely models with these parts of its gain.
-ProcessModels modelsOf(const CommissioningBrief& brief, ProcessKind kind,
-                       const ProcessElement& element, const std::vector<double>& parts) {
+ProcessModels lagsOf(const CommissioningBrief& brief, ProcessKind kind,
+                     const ProcessElement& element, const std::vector<double>& parts) {
   ProcessFit fit;
   fit.kind = kind;
   ElementEstimate heat, inlet;
@@ -206,28 +206,24 @@ ProcessModels modelsOf(const CommissioningBrief& brief, ProcessKind kind,
   fit.one_step = fit.free_run = 0.05;
   fit.output = 42.0;
   fit.input = Vector::Constant(2, 10.0);
-  ProcessModels models;
-  models.fits = {fit};
-  models.model.name = "lag";
-  models.model.sample_time_s = brief.loop.plant_info.sample_time_s;
-  models.model.outputs = brief.loop.plant_info.outputs;
-  models.model.inputs = brief.loop.plant_info.inputs;
-  models.model.disturbances = brief.loop.plant_info.disturbances;
+  TsModel names;
+  names.name = "lag";
+  names.sample_time_s = brief.loop.plant_info.sample_time_s;
+  names.outputs = brief.loop.plant_info.outputs;
+  names.inputs = brief.loop.plant_info.inputs;
+  names.disturbances = brief.loop.plant_info.disturbances;
   for (const double part : parts) {
-    models.fits.front().ensemble.push_back({heat.element, inlet.element});
-    models.fits.front().ensemble.back().front().gain *= part;
-    models.ensemble.push_back(spoiltModel(models, part, 0.0));
+    fit.ensemble.push_back({heat.element, inlet.element});
+    fit.ensemble.back().front().gain *= part;
   }
-  models.model = spoiltModel(models, 1.0, 0.0);
-  models.errors.one_step = models.errors.free_run = Vector::Constant(1, 0.05);
-  return models;
+  return fpc::modelsOf(names, {fit}, static_cast<int>(parts.size()));
 }
 
 Design designed(const CommissioningBrief& brief, const std::string& folder,
-                const ProcessModels& models, double peak) {
+                const ProcessModels& models, double peak, int evaluations = 4) {
   writeModels(models, folder);
   DesignParams params;
-  params.evaluations = 8;
+  params.evaluations = evaluations;
   params.tuned_members = 2;
   params.threads = 1;
   params.peak = peak;
@@ -245,12 +241,16 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   const auto on = [&](const std::vector<double>& parts) {
     return designed(
         brief, folder,
-        modelsOf(brief, ProcessKind::kUnstable, {1.0, -600.0, 0.0, 0.0, 30.0, false}, parts), 2.0);
+        lagsOf(brief, ProcessKind::kUnstable, {1.0, -600.0, 0.0, 0.0, 30.0, false}, parts), 2.0);
   };
   const Design some = on({1.1, 0.05, 0.9, 1.05, 0.95});
   EXPECT_EQ(some.refuted, 1U);
   EXPECT_TRUE(some.offers_law || some.offers_pi);
   EXPECT_NE(some.pi.find("kp: -"), std::string::npos) << "its sign holds an unstable lag";
+  const std::vector<double>& offered =
+      some.offers_law ? some.law_figures.costs : some.pi_figures.costs;
+  ASSERT_EQ(offered.size(), some.present_costs.size());
+  for (std::size_t m = 0; m < offered.size(); ++m) EXPECT_LT(offered[m], some.present_costs[m]);
   const Design none = on({0.05, -1.0, 0.02, 0.04, 0.9});
   EXPECT_EQ(none.refuted, 4U);
   EXPECT_FALSE(none.offers_law || none.offers_pi);
@@ -258,31 +258,80 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   EXPECT_NE(none.pi.find("kp:"), std::string::npos);
 }
 
+TEST(Design, AsksThePresentControlOfALoopWithoutAnEnd) {
+  const std::string folder =
+      folderOf("endless", kTankBrief, "tank.yaml",
+               "extends: heated_tank\nsampling: {duration_h: 0}\nsetpoint: {schedule: []}\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const ProcessElement lag{2.5, 240.0, 0.0, 0.0, 60.0, false};
+  EXPECT_TRUE(presentHolds(brief, lagsOf(brief, ProcessKind::kStable, lag, {1.1, 0.9})));
+  EXPECT_FALSE(presentHolds(brief, lagsOf(brief, ProcessKind::kStable, lag, {-1.0, -2.0})));
+}
+
+/// A tank that nothing holds, and likely models of it.
+class DesignOf : public ::testing::Test {
+ protected:
+  DesignOf()
+      : folder_(folderOf("open", kTankBrief, "tank.yaml",
+                         "extends: heated_tank\ncontroller: {type: excitation, signals: [{input: "
+                         "heat, signal: none}]}\n")),
+        brief_(readBrief(inFolder(folder_, "brief_in.yaml"))),
+        models_(lagsOf(brief_, ProcessKind::kStable, {2.5, 240.0, 0.0, 0.0, 60.0, false},
+                       {1.1, 0.9, 1.05, 0.95})) {}
+  Design design(double peak, int evaluations = 4) const {
+    return designed(brief_, folder_, models_, peak, evaluations);
+  }
+  std::string folder_;
+  CommissioningBrief brief_;
+  ProcessModels models_;
+};
+
 /// A lag with dead time allows any peak above 1, and with integral action none of 1 or less
 /// (Bode's integral).
-TEST(Design, IsSoftenedToThePeakThatIsAskedForOrStaysAsTuned) {
-  const std::string folder =
-      folderOf("softened", kTankBrief, "tank.yaml",
-               "extends: heated_tank\ncontroller: {type: excitation, signals: [{input: heat, "
-               "signal: none}]}\n");
-  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
-  const ProcessModels models = modelsOf(
-      brief, ProcessKind::kStable, {2.5, 240.0, 0.0, 0.0, 60.0, false}, {1.1, 0.9, 1.05, 0.95});
+TEST_F(DesignOf, AnOpenTankKeepsThePeakThatIsAskedForOrOffersNothing) {
   const double asked = 1.3;
-  const Design tuned = designed(brief, folder, models, 100.0);
-  const Design softened = designed(brief, folder, models, asked);
-  const Design never = designed(brief, folder, models, 1.0);
+  const Design free = design(100.0), stable = design(asked, 16), never = design(1.0);
   for (const auto figures : {&Design::law_figures, &Design::pi_figures}) {
-    EXPECT_GT((tuned.*figures).worst_peak, asked) << "nothing to soften";
-    EXPECT_LE((softened.*figures).worst_peak, asked);
-    EXPECT_GT((softened.*figures).worst_peak, 1.0);
-    EXPECT_EQ((never.*figures).worst_peak, (tuned.*figures).worst_peak);
+    EXPECT_GT((free.*figures).worst_peak, asked) << "the peak costs nothing";
+    EXPECT_LE((stable.*figures).worst_peak, asked);
+    EXPECT_GT((stable.*figures).worst_peak, 1.0);
+    EXPECT_GT((never.*figures).worst_peak, 1.0);
+    EXPECT_GE((stable.*figures).tuned, (free.*figures).tuned) << "stability is free";
   }
-  EXPECT_TRUE(softened.offers_law || softened.offers_pi);
+  EXPECT_TRUE(stable.offers_law || stable.offers_pi);
   EXPECT_FALSE(never.offers_law || never.offers_pi);
-  EXPECT_NE(softened.law, tuned.law);
-  EXPECT_EQ(never.law, tuned.law);
-  EXPECT_EQ(never.pi, tuned.pi);
+}
+
+/// The noise of the fit acts in the runs that are judged.
+TEST_F(DesignOf, AnOpenTankCostsMoreWithNoise) {
+  const double quiet = design(2.0).pi_figures.tuned;
+  models_.fits.front().one_step *= 20.0;
+  models_.fits.front().noise = Vector::Constant(1, 0.5);
+  EXPECT_GT(design(2.0).pi_figures.tuned, 1.05 * quiet);
+}
+
+/// The control in charge is what a longer search found: a short one does not beat it.
+TEST_F(DesignOf, ATankThatIsHeldWellOffersNothing) {
+  const std::string folder = folderOf("held_well", kTankBrief, "tank.yaml", design(2.0, 40).pi);
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const Design d = designed(brief, folder, models_, 2.0);
+  EXPECT_LE(std::max(d.pi_figures.worst_peak, d.law_figures.worst_peak),
+            std::max(2.0, d.present_peak));
+  EXPECT_FALSE(d.offers_law || d.offers_pi);
+}
+
+/// What the brief does not name under `hold` floats, with a zone or without; a brief without `hold`
+/// holds all that has no zone.
+TEST(CommissioningBrief, HoldsWhatItNames) {
+  const auto held = [](const std::string& hold) {
+    std::string brief = kColumnBrief;
+    brief.replace(brief.find("hold: {T_17: 0, T_4: 0}\n"), 24, hold);
+    const std::string folder = folderOf("held", brief, "column.yaml", kColumn);
+    return readBrief(inFolder(folder, "brief_in.yaml")).held;
+  };
+  EXPECT_EQ(held(""), (std::vector<bool>{true, true}));
+  EXPECT_EQ(held("zone: {T_4: [-1, 1]}\n"), (std::vector<bool>{true, false}));
+  EXPECT_EQ(held("hold: {T_4: 0}\n"), (std::vector<bool>{false, true}));
 }
 
 TEST(Commissioning, OfTwoInputsFindsTheCouplingInsideItsLimits) {

@@ -78,22 +78,31 @@ bool InputLimitedIlqr::chooseInput(Eigen::Index i) {
     if (!solveFree()) return false;
     if (!fixMore() && !release()) break;
   }
+  step_.col(i) = wish_;
+  for (Eigen::Index a = 0; a < n_u_; ++a)
+    bounds_[static_cast<std::size_t>(a)] = !fixed_[static_cast<std::size_t>(a)] ? Bound::kFree
+                                           : atMoveLimit(i, a)                  ? Bound::kMoves
+                                                                                : Bound::kFixed;
+  return wish_.allFinite();
+}
+
+/// The feedback K of sample i, behind chooseInput().
+bool InputLimitedIlqr::findFeedback(Eigen::Index i) {
   Matrix& K = K_[static_cast<std::size_t>(i)];
   K = -Qux_;
   for (Eigen::Index a = 0; a < n_u_; ++a) {
-    if (!fixed_[static_cast<std::size_t>(a)]) continue;
+    if (bounds_[static_cast<std::size_t>(a)] == Bound::kFree) continue;
     K.row(a).setZero();
-    if (!atMoveLimit(i, a)) continue;
+    if (bounds_[static_cast<std::size_t>(a)] != Bound::kMoves) continue;
     const Eigen::Index before = model_.inputState(a, 1);
     K(a, before) = 1.0;
     for (Eigen::Index b = 0; b < n_u_; ++b)
-      if (!fixed_[static_cast<std::size_t>(b)]) K(b, before) -= Quu_(b, a);
+      if (bounds_[static_cast<std::size_t>(b)] == Bound::kFree) K(b, before) -= Quu_(b, a);
   }
   const double root = factor_.matrixLLT()(0, 0);
   if (n_u_ == 1) (K /= root) /= root;  // what a solver's call does, at a tenth of the cost
   for (Eigen::Index j = 0; j < n_x_ && n_u_ > 1; ++j) factor_.solveInPlace(K.col(j));
-  step_.col(i) = wish_;
-  return K.allFinite() && wish_.allFinite();
+  return K.allFinite();
 }
 
 }  // namespace fpc

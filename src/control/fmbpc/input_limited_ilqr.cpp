@@ -28,6 +28,8 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       A_(static_cast<std::size_t>(N_), Matrix::Zero(n_x_, n_x_)),
       B_(static_cast<std::size_t>(N_), Matrix::Zero(n_x_, n_u_)),
       K_(static_cast<std::size_t>(N_), Matrix::Zero(n_u_, n_x_)),
+      linear_(std::all_of(model.model().submodels.begin(), model.model().submodels.end(),
+                          [](const OutputModel& m) { return m.rules.size() == 1; })),
       P_(n_x_, n_x_),
       PA_(n_x_, n_x_),
       PB_(n_x_, n_u_),
@@ -50,8 +52,10 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       disturbances_(model.model().disturbances.size(), N_),
       reference_(n_y_, N_),
       fixed_(static_cast<std::size_t>(n_u_)),
+      bounds_(fixed_.size()),
       factor_(n_u_) {
   findPattern();
+  if (linear_) stages_.assign(A_.size(), Stage{P_, Quu_, Qux_, bounds_});
 }
 
 /// The rules write the rows of the outputs; the others hand on what is past, once and for all.
@@ -61,10 +65,20 @@ void InputLimitedIlqr::findPattern() {
   for (std::size_t o = 0; o < model_.model().outputs.size(); ++o)
     ruled[static_cast<std::size_t>(model_.outputState(static_cast<Eigen::Index>(o)))] = true;
   rows_.resize(static_cast<std::size_t>(n_x_));
+  columns_.resize(rows_.size());
   for (Eigen::Index j = 0; j < n_x_; ++j)
     for (Eigen::Index k = 0; k < n_x_; ++k)
-      if (ruled[static_cast<std::size_t>(k)] || A(k, j) != 0.0)
+      if (ruled[static_cast<std::size_t>(k)] || A(k, j) != 0.0) {
         rows_[static_cast<std::size_t>(j)].push_back(k);
+        columns_[static_cast<std::size_t>(k)].push_back(j);
+      }
+}
+
+/// A row of A times x; what is 0 in A for ever is left out.
+double InputLimitedIlqr::rowTimes(const Matrix& A, Eigen::Index row, const Vector& x) const {
+  double sum = 0.0;
+  for (const Eigen::Index j : columns_[static_cast<std::size_t>(row)]) sum += A(row, j) * x[j];
+  return sum;
 }
 
 /// PA_ = P A and Qxx_ = A' P A; what is 0 in A for ever is left out.
@@ -85,6 +99,11 @@ void InputLimitedIlqr::multiplyByA(const Matrix& A) {
 
 void InputLimitedIlqr::forget() { warm_ = false; }
 
+void InputLimitedIlqr::countErrors(Eigen::Index n) {
+  if (n != counted_) swept_ = false;
+  counted_ = n;
+}
+
 void InputLimitedIlqr::retune(int iterations, VectorRef weight_output, VectorRef weight_move,
                               VectorRef weight_input, VectorRef input_target) {
   params_.iterations = iterations;
@@ -92,6 +111,7 @@ void InputLimitedIlqr::retune(int iterations, VectorRef weight_output, VectorRef
   params_.weight_move = weight_move;
   params_.weight_input = weight_input;
   params_.input_target = input_target;
+  swept_ = false;
 }
 
 /// What sample i+1 and the move of sample i cost.
@@ -118,21 +138,26 @@ void InputLimitedIlqr::evaluate(Eigen::Index i) {
   ++evaluations_;
 }
 
-/// The model forwards under u + share * step + K (x - x of the plan), clipped.
-double InputLimitedIlqr::simulate(double share, Matrix& states, Matrix& inputs) {
+/// The model forwards under the plan's u, with feedback u + share * step + K (x - x of the plan),
+/// clipped.
+double InputLimitedIlqr::simulate(double share, bool feedback, Matrix& states, Matrix& inputs) {
   double cost = 0.0;
   states.col(0) = states_.col(0);
   for (Eigen::Index i = 0; i < N_; ++i) {
-    moved_ = states.col(i) - states_.col(i);
-    input_ = inputs_.col(i) + share * step_.col(i);
-    input_ += K_[static_cast<std::size_t>(i)].lazyProduct(moved_);
+    input_ = inputs_.col(i);
+    if (feedback) {
+      moved_ = states.col(i) - states_.col(i);
+      input_ += share * step_.col(i);
+      input_ += K_[static_cast<std::size_t>(i)].lazyProduct(moved_);
+    }
     for (Eigen::Index a = 0; a < n_u_; ++a) wish_[a] = states(model_.inputState(a, 1), i);
     limits_.clip(input_, wish_);
     inputs.col(i) = input_;
     state_ = states.col(i);
     evaluate(i);
     next_ = model_.affine().g + correction_;
-    next_ += model_.affine().A.lazyProduct(state_);
+    for (Eigen::Index k = 0; k < n_x_; ++k) moved_[k] = rowTimes(model_.affine().A, k, state_);
+    next_ += moved_;
     next_ += model_.affine().B.lazyProduct(input_);
     states.col(i + 1) = next_;
     cost += weigh(i, states, inputs);
@@ -142,6 +167,8 @@ double InputLimitedIlqr::simulate(double share, Matrix& states, Matrix& inputs) 
 
 /// The derivatives along the path: of the consequents, and of the weights that change with it.
 void InputLimitedIlqr::linearise() {
+  if (linear_ && linearised_) return;
+  linearised_ = true;
   for (Eigen::Index i = 0; i < N_; ++i) {
     state_ = states_.col(i);
     input_ = inputs_.col(i);
@@ -153,50 +180,91 @@ void InputLimitedIlqr::linearise() {
   }
 }
 
+/// P_ of sample i + 1 with what its errors cost, and Quu_, Qux_, Qxx_ of sample i.
+void InputLimitedIlqr::reach(Eigen::Index i) {
+  const Matrix& A = A_[static_cast<std::size_t>(i)];
+  const Matrix& B = B_[static_cast<std::size_t>(i)];
+  for (Eigen::Index o = 0; o < n_y_ && i < counted_; ++o) {
+    const Eigen::Index row = model_.outputState(o);
+    P_(row, row) += params_.weight_output[o];
+  }
+  multiplyByA(A);
+  PB_.noalias() = P_.lazyProduct(B);
+  Qux_.noalias() = B.transpose().lazyProduct(PA_);
+  Quu_.noalias() = B.transpose().lazyProduct(PB_);
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    const Eigen::Index before = model_.inputState(a, 1);
+    const double L = params_.weight_move[a];
+    Quu_(a, a) += L;
+    Qux_(a, before) -= L;
+    Qxx_(before, before) += L;
+  }
+  for (Eigen::Index a = 0; a < params_.weight_input.size(); ++a)
+    Quu_(a, a) += params_.weight_input[a];
+}
+
+/// P_ of sample i: of the rest, P = Qxx + (K' Quu + Qux') K + K' Qux.
+void InputLimitedIlqr::goBack(Eigen::Index i) {
+  const Matrix& K = K_[static_cast<std::size_t>(i)];
+  PB_.noalias() = K.transpose().lazyProduct(Quu_);
+  PB_ += Qux_.transpose();
+  P_ = Qxx_;
+  P_ += PB_.lazyProduct(K);
+  P_ += K.transpose().lazyProduct(Qux_);
+  PA_ = P_.transpose();
+  P_ = 0.5 * (P_ + PA_);
+}
+
 bool InputLimitedIlqr::sweep() {
   P_.setZero();
   p_.setZero();
+  bool known = swept_;  // the matrices of this sample and those behind it
+  swept_ = false;
   for (Eigen::Index i = N_ - 1; i >= 0; --i) {
-    const Matrix& A = A_[static_cast<std::size_t>(i)];
-    const Matrix& B = B_[static_cast<std::size_t>(i)];
-    const Matrix& K = K_[static_cast<std::size_t>(i)];
+    const auto at = static_cast<std::size_t>(i);
+    if (known) {
+      Quu_ = stages_[at].Quu;
+      Qux_ = stages_[at].Qux;
+    } else {
+      reach(i);
+    }
     for (Eigen::Index o = 0; o < n_y_ && i < counted_; ++o) {
       const Eigen::Index row = model_.outputState(o);
-      P_(row, row) += params_.weight_output[o];
       p_[row] += params_.weight_output[o] * (states_(row, i + 1) + offset_[o] - reference_(o, i));
     }
-    multiplyByA(A);
-    PB_.noalias() = P_.lazyProduct(B);
-    Qux_.noalias() = B.transpose().lazyProduct(PA_);
-    Quu_.noalias() = B.transpose().lazyProduct(PB_);
-    Qx_.noalias() = A.transpose().lazyProduct(p_);
-    Qu_.noalias() = B.transpose().lazyProduct(p_);
+    Qx_.noalias() = A_[at].transpose().lazyProduct(p_);
+    Qu_.noalias() = B_[at].transpose().lazyProduct(p_);
     for (Eigen::Index a = 0; a < n_u_; ++a) {
       const Eigen::Index before = model_.inputState(a, 1);
-      const double L = params_.weight_move[a], move = inputs_(a, i) - states_(before, i);
-      Quu_(a, a) += L;
-      Qux_(a, before) -= L;
-      Qxx_(before, before) += L;
-      Qu_[a] += L * move;
-      Qx_[before] -= L * move;
+      const double moved = params_.weight_move[a] * (inputs_(a, i) - states_(before, i));
+      Qu_[a] += moved;
+      Qx_[before] -= moved;
     }
-    for (Eigen::Index a = 0; a < params_.weight_input.size(); ++a) {
-      Quu_(a, a) += params_.weight_input[a];
+    for (Eigen::Index a = 0; a < params_.weight_input.size(); ++a)
       Qu_[a] += params_.weight_input[a] * (inputs_(a, i) - params_.input_target[a]);
-    }
     if (!chooseInput(i)) return false;
-    // Value of the rest: p = Qx + K' (Quu k + Qu) + Qux' k, P likewise.
+    if (known && bounds_ != stages_[at].bounds) {
+      known = false;
+      if (i + 1 < N_) P_ = stages_[at + 1].P;
+      reach(i);
+    }
+    if (!known) {
+      if (!findFeedback(i)) return false;
+      goBack(i);
+    }
+    if (!known && linear_) {
+      Stage& stage = stages_[at];
+      stage.P = P_;
+      stage.Quu = Quu_;
+      stage.Qux = Qux_;
+      stage.bounds = bounds_;
+    }
+    // Of the rest: p = Qx + K' (Quu k + Qu) + Qux' k.
     Qu_ += Quu_.lazyProduct(step_.col(i));
-    p_ = Qx_ + K.transpose().lazyProduct(Qu_);
+    p_ = Qx_ + K_[at].transpose().lazyProduct(Qu_);
     p_ += Qux_.transpose().lazyProduct(step_.col(i));
-    PB_.noalias() = K.transpose().lazyProduct(Quu_);
-    PB_ += Qux_.transpose();
-    P_ = Qxx_;
-    P_ += PB_.lazyProduct(K);
-    P_ += K.transpose().lazyProduct(Qux_);
-    PA_ = P_.transpose();
-    P_ = 0.5 * (P_ + PA_);
   }
+  swept_ = linear_ && P_.allFinite();
   return P_.allFinite();
 }
 
@@ -211,18 +279,16 @@ bool InputLimitedIlqr::plan(VectorRef state, VectorRef correction, VectorRef off
   for (Eigen::Index i = 0; i + 1 < N_ && warm_; ++i) inputs_.col(i) = inputs_.col(i + 1);
   if (!warm_) inputs_.colwise() = Vector::Map(input_previous.data(), n_u_);
   states_.col(0) = state;
-  for (auto& K : K_) K.setZero();
-  step_.setZero();
-  cost_ = simulate(0.0, trial_states_, trial_inputs_);
+  cost_ = simulate(0.0, false, trial_states_, trial_inputs_);
   states_.swap(trial_states_);
   inputs_.swap(trial_inputs_);
   warm_ = std::isfinite(cost_);
   for (int n = 0; n < params_.iterations && warm_; ++n) {
     linearise();
     if (!sweep()) break;
-    double share = 1.0, cost = simulate(share, trial_states_, trial_inputs_);
+    double share = 1.0, cost = simulate(share, true, trial_states_, trial_inputs_);
     while (!(cost < cost_) && share > kSmallest)
-      cost = simulate(share *= 0.5, trial_states_, trial_inputs_);
+      cost = simulate(share *= 0.5, true, trial_states_, trial_inputs_);
     if (!(cost < cost_)) break;
     const bool enough = cost_ - cost < kEnough * cost_;
     cost_ = cost;

@@ -26,7 +26,8 @@ struct IlqrParams {
 /// before. An input at a bound stays there, one at its move limit goes where u(k+i-1) goes; the
 /// others are found again.
 /// Source: li2004; bounds after tassa2014. Work is linear in N
-/// and bounded by `iterations`. No allocation after construction.
+/// and bounded by `iterations`. No allocation after construction. The matrices of a linear model's
+/// sweep are kept: they are found again only before a sample at which other inputs are at a limit.
 class InputLimitedIlqr {
  public:
   InputLimitedIlqr(const LocalModel& model, IlqrParams params, InputLimits limits);
@@ -37,7 +38,7 @@ class InputLimitedIlqr {
   void retune(int iterations, VectorRef weight_output, VectorRef weight_move,
               VectorRef weight_input, VectorRef input_target);
   /// From the next plan on only the errors of x(k+1)..x(k+n) count, 0 <= n <= N; at first all.
-  void countErrors(Eigen::Index n) { counted_ = n; }
+  void countErrors(Eigen::Index n);
   bool warm() const { return warm_; }  ///< the next plan goes on from the last one
   /// state xi(k), correction n_x (added to every prediction), offset_output n_y (y - y_m),
   /// disturbances n_d N, reference n_y N or more columns. Returns false if nothing finite came out.
@@ -50,13 +51,19 @@ class InputLimitedIlqr {
   long evaluations() const { return evaluations_; }             ///< of the rules, for that plan
 
  private:
+  enum class Bound { kFree, kFixed, kMoves };  ///< an input: at a limit; at its move limit
+
   void evaluate(Eigen::Index i);
-  double simulate(double share, Matrix& states, Matrix& inputs);
+  double simulate(double share, bool feedback, Matrix& states, Matrix& inputs);
   void linearise();
   bool sweep();
+  void reach(Eigen::Index i);
+  void goBack(Eigen::Index i);
   void findPattern();
   void multiplyByA(const Matrix& A);
+  double rowTimes(const Matrix& A, Eigen::Index row, const Vector& x) const;
   bool chooseInput(Eigen::Index i);
+  bool findFeedback(Eigen::Index i);
   bool atMoveLimit(Eigen::Index i, Eigen::Index a) const;
   bool solveFree();
   bool fixMore();
@@ -72,11 +79,19 @@ class InputLimitedIlqr {
   long evaluations_{};
   Matrix states_, inputs_, trial_states_, trial_inputs_, step_;  ///< columns: samples
   std::vector<Matrix> A_, B_, K_;                                ///< one per sample
-  std::vector<std::vector<Eigen::Index>> rows_;  ///< of each column of A, that may not be 0
+  struct Stage {                                                 ///< of the last sweep
+    Matrix P, Quu, Qux;
+    std::vector<Bound> bounds;  ///< n_u
+  };
+  std::vector<Stage> stages_;  ///< N of a linear model, else none
+  bool linear_, linearised_{false}, swept_{false};
+  /// Of each column of A the rows that may not be 0, of each row the columns.
+  std::vector<std::vector<Eigen::Index>> rows_, columns_;
   Matrix P_, PA_, PB_, Quu_, Qux_, Qxx_, free_Quu_;
   Vector p_, Qu_, Qx_, wish_, state_, next_, moved_, lower_, upper_, input_, correction_, offset_;
   Matrix disturbances_, reference_;
   std::vector<bool> fixed_;
+  std::vector<Bound> bounds_;  ///< n_u, of the sample at work
   Eigen::LLT<Matrix> factor_;
 };
 

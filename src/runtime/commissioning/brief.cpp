@@ -129,7 +129,8 @@ CommissioningBrief readBrief(const std::string& file, const LoopFile* running) {
       section.fail("hold." + name, "a setpoint between the limits " + exactText(b.lower[i]) +
                                        " and " + exactText(b.upper[i]) + ", got " +
                                        exactText(b.hold[i]));
-    b.held.push_back(!std::isfinite(b.zone_lower[i]) && !std::isfinite(b.zone_upper[i]));
+    const bool zone = std::isfinite(b.zone_lower[i]) || std::isfinite(b.zone_upper[i]);
+    b.held.push_back(!zone && (b.hold_asked.empty() || std::isfinite(asked[i])));
   }
   need(section, "plant_time_h", "the hours of plant time that watching and testing may use");
   section.number("plant_time_h", b.plant_time_h, Range::positive());

@@ -8,13 +8,14 @@
 
 #include "base/finite_json.hpp"
 #include "base/parallel.hpp"
+#include "base/random.hpp"
 #include "base/statistics.hpp"
 #include "base/yaml_load.hpp"
 #include "control/pi/tuning.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "optim/population_search.hpp"
+#include "optim/simplex_search.hpp"
 #include "runtime/loop_probe.hpp"
 #include "runtime/run.hpp"
 
@@ -25,21 +26,18 @@ using Eigen::Index;
 
 constexpr double kStepRoom = 0.3;    // of the distance to a limit: steps of the setpoints
 constexpr double kStepReach = 0.5;   // of what the strongest input can do
-constexpr double kLoad = 0.5;        // of the step: shift of an output by a load
+constexpr double kLoadReach = 0.1;   // of what the strongest input can do: loads
+constexpr double kLoadRoom = 0.5;    // of the distance to a limit, that a load may shift an output
 constexpr double kViolation = 10.0;  // cost of all samples beyond the limits
 constexpr double kFailed = 1e3;      // cost of a run that fails
-constexpr int kFewestRun = 40, kMostRun = 220;  // samples of one stretch of the scenario
+constexpr double kCalm = 3.0;        // settling times of one stretch of the scenario
+constexpr int kFewestRun = 40, kMostRun = 220;  // samples of it
 constexpr double kShortHorizon = 10, kLongHorizon = 60;
-constexpr double kSofter = 2.0;  // the moves' weight when a member is not stable enough
-constexpr int kSoftenings = 16;
-constexpr double kStillHelps = 0.5;    // of what a softer step did when it was chosen
+constexpr double kPeakPower = 6.0, kMostPeak = 20.0;  // of the peak beyond what is allowed
+constexpr int kMostRounds = 3;                        // of a search, behind its first
 constexpr double kMostPresent = 10.0;  // sensitivity that a control which holds a plant may have
-constexpr double kLeastDearer = 0.02;  // of the cost, that a softer setting is taken to add
-constexpr double kSpoiltGain = 1.6, kSpoiltDelay = 0.25;  // factor; of dead time and a sample
-constexpr double kSpoiltShare = 0.2;                      // of the cost that is tuned
-constexpr double kWeakWeight = 0.3;   // of the square of a weak direction's gain
-constexpr double kZoneWeight = 0.01;  // of an output that may float
-constexpr double kLeastBetter = 1.0;  // cost ratio that a law must be below
+constexpr double kWeakWeight = 0.3;    // of the square of a weak direction's gain
+constexpr double kZoneWeight = 0.01;   // of an output that may float
 constexpr const char* kNeither = "neither is offered: test again, or allow more plant time";
 
 std::string mapOf(const std::vector<SignalInfo>& signals, const Vector& values) {
@@ -56,6 +54,7 @@ struct Pairing {
 /// What the models say of the loops, in the units of the plant.
 struct Outline {
   Vector y_scale, u_range;  // step of each setpoint; range of each input
+  Vector load;              // shift of each output, of integrators per settling time
   Matrix gain;              // likeliest; of integrators per settling time
   double settling{};
   std::vector<Pairing> pairs;
@@ -115,6 +114,7 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
       o.gain(i, j) = e.integrating ? e.gain * o.settling : e.gain;
     }
   o.y_scale.resize(n_y);
+  o.load = kLoadReach * (o.gain.cwiseAbs() * o.u_range.asDiagonal()).rowwise().maxCoeff();
   for (Index i = 0; i < n_y; ++i) {
     const double room = std::min(brief.upper[i] - brief.hold[i], brief.hold[i] - brief.lower[i]);
     double reach = 0.0;
@@ -125,10 +125,11 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
                                                                 0.1 * o.u_range[j]));
     o.y_scale[i] = std::min(kStepRoom * room, kStepReach * reach);
     if (!(o.y_scale[i] > 0.0)) o.y_scale[i] = kStepRoom * room;
+    o.load[i] = std::min(o.load[i], kLoadRoom * room);
   }
   o.pairs = pairsOf(brief, o.y_scale.cwiseInverse().asDiagonal() * o.gain * o.u_range.asDiagonal());
-  o.stretch =
-      static_cast<int>(std::clamp<double>(std::ceil(1.5 * o.settling / Ts), kFewestRun, kMostRun));
+  o.stretch = static_cast<int>(
+      std::clamp<double>(std::ceil(kCalm * o.settling / Ts), kFewestRun, kMostRun));
   return o;
 }
 
@@ -197,14 +198,11 @@ class Designer {
         model_file_(std::move(model_file)),
         models_(models),
         params_(params),
-        outline_(outlineOf(brief, models)) {
+        outline_(outlineOf(brief, models)),
+        allowed_peak_(params.peak) {
     std::vector<const TsModel*> all;
     for (const TsModel& member : models.ensemble) all.push_back(&member);
     require(split(all), "ensemble", "more members than are tuned on");
-    double late = brief.loop.plant_info.sample_time_s;
-    for (const ProcessFit& fit : models.fits)
-      for (const ElementEstimate& e : fit.elements) late = std::max(late, e.element.dead_time);
-    spoilt_ = spoiltModel(models, kSpoiltGain, kSpoiltDelay * late);
   }
 
   Design run() {
@@ -212,29 +210,15 @@ class Designer {
     require(!outline_.pairs.empty(), brief_.file + ": zone", "an output that is to be held");
     leaveOutRefuted(d);
     lookAtDirections(d);
-    Vector start, width;
-    lawStart(start, width);
-    if (refuted_) return untuned(d, start);
-    Vector pi_x = searched(
-        "PI", piStart(), piWidth(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
-    pi_ = piOf(pi_x);
-    Vector x = searched(
-        "law", start, width, [this](const Vector& point) { return lawText(point); }, d.law_figures);
-    show("margins of the present control");
-    chooseProbed(piText(pi_x), lawText(x));
-    d.probed = probed_.size();
-    allowWhatThereIs(d);
-    show("margins of the PI");
-    const auto pi_text = [this](const Vector& at) { return piText(at); };
-    soften(d.pi_figures, pi_x, pi_text, [this](Vector at, double) { return softerPi(at); });
-    pi_ = piOf(pi_x);
-    show("margins of the law");
-    const auto law_text = [this](const Vector& at) { return lawText(at); };
-    Softening way;
-    soften(d.law_figures, x, law_text,
-           [&](const Vector& at, double peak) { return softerLaw(at, peak, way); });
-    d.pi = piText(pi_x);
-    d.law = lawText(x);
+    if (refuted_) return untuned(d);
+    const Vector pi = searched(
+        "PI", piStarts(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
+    pi_ = piOf(pi);
+    const Vector law = searched(
+        "law", lawStarts(), [this](const Vector& x) { return lawText(x); }, d.law_figures);
+    d.probed = tuned_.size() + held_out_.size();
+    d.pi = piText(pi);
+    d.law = lawText(law);
     compare(d);
     return d;
   }
@@ -270,12 +254,17 @@ class Designer {
       if (peaks[m] <= kMostPresent) held.push_back(&models_.ensemble[m]);
     d.refuted = models_.ensemble.size() - held.size();
     refuted_ = !split(held);
+    if (refuted_) return;
+    // A plant that is hard to hold may not allow the peak that is asked for: then nothing may be
+    // more sensitive than the control in charge, on the same models.
+    d.present_peak = worst(probes(brief_.loop.resolved, tuned_)).worst_peak;
+    if (std::isfinite(d.present_peak)) allowed_peak_ = std::max(allowed_peak_, d.present_peak);
   }
 
   /// There is nothing to tune on: the loop files hold what a search would begin with.
-  Design untuned(Design& d, const Vector& law_start) const {
-    d.pi = piText(piStart());
-    d.law = lawText(law_start);
+  Design untuned(Design& d) const {
+    d.pi = piText(Vector::Zero(2 * loops()));
+    d.law = lawText(lawStarts().front());
     for (DesignFigures* figures : {&d.law_figures, &d.pi_figures}) figures->worst_peak = kInfinity;
     d.remarks.push_back("the present control holds the plant and would not hold " +
                         std::to_string(d.refuted) + " of " +
@@ -294,57 +283,74 @@ class Designer {
         .elements[static_cast<std::size_t>(pairing.input)]
         .element;
   }
-  Vector piStart() const { return Vector::Zero(2 * loops()); }
-  Vector piWidth() const { return Vector::Constant(2 * loops(), 3.0); }
+
+  PiSetting ruleOf(Index p) const {
+    const double Ts = brief_.loop.plant_info.sample_time_s;
+    const ProcessElement& e = elementOf(p);
+    PiSetting s;
+    const double late = e.dead_time + std::abs(std::min(e.lead, 0.0)) + 0.5 * Ts;
+    if (e.integrating) {  // skogestad2003
+      const double wait = std::max(late + e.second, Ts);
+      s.kp = 0.5 / (e.gain * wait);
+      s.ti_min = 8.0 * wait / 60.0;
+    } else if (e.time_constant < 0.0) {
+      // 1 + K kp < 0 stabilises K / (tau s + 1) with tau < 0; the more, the sooner it acts.
+      const double wait = std::max(late + e.second, Ts);
+      s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
+      s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
+    } else {
+      const Fopdt lag{e.gain, std::max(e.time_constant + e.second, 0.3 * Ts) / 60.0, late / 60.0};
+      const PiTuning t =
+          imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
+      s = {t.kp, t.integral_time_min};
+    }
+    return s;
+  }
 
   /// x: log2 of what the rule's gain and integral time are multiplied by.
   std::vector<PiSetting> piOf(const Vector& x) const {
     std::vector<PiSetting> settings;
-    const double Ts = brief_.loop.plant_info.sample_time_s;
     for (Index p = 0; p < loops(); ++p) {
-      const Pairing& pair = outline_.pairs[static_cast<std::size_t>(p)];
-      const ProcessElement& e = elementOf(p);
-      PiSetting s;
-      const double late = e.dead_time + std::abs(std::min(e.lead, 0.0)) + 0.5 * Ts;
-      if (e.integrating) {  // skogestad2003
-        const double wait = std::max(late + e.second, Ts);
-        s.kp = 0.5 / (e.gain * wait);
-        s.ti_min = 8.0 * wait / 60.0;
-      } else if (e.time_constant < 0.0) {
-        // 1 + K kp < 0 stabilises K / (tau s + 1) with tau < 0; the more, the sooner it acts.
-        const double wait = std::max(late + e.second, Ts);
-        s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
-        s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
-        present(pair, s);
-      } else {
-        const Fopdt lag{e.gain, std::max(e.time_constant + e.second, 0.3 * Ts) / 60.0, late / 60.0};
-        const PiTuning t =
-            imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
-        s = {t.kp, t.integral_time_min};
-      }
-      s.kp *= std::exp2(x[2 * p]);
-      s.ti_min *= std::exp2(x[2 * p + 1]);
-      settings.push_back(s);
+      settings.push_back(ruleOf(p));
+      settings.back().kp *= std::exp2(x[2 * p]);
+      settings.back().ti_min *= std::exp2(x[2 * p + 1]);
     }
     return settings;
   }
 
-  /// The gains in charge, where a PI holds the pair: of a plant that runs away others are a guess.
-  void present(const Pairing& pair, PiSetting& setting) const {
-    const PlantInfo& plant = brief_.loop.plant_info;
-    const YAML::Node in_charge = loadYaml(brief_.loop.resolved, brief_.loop.name)["controller"];
-    if (!brief_.closed) return;
-    for (const auto& loop : in_charge["loops"]) {
-      const double kp = loop["kp"].as<double>(0.0), ki_per_h = loop["ki_per_h"].as<double>(0.0);
-      if (loop["input"].as<std::string>("") !=
-              plant.inputs[static_cast<std::size_t>(pair.input)].name ||
-          loop["output"].as<std::string>("") !=
-              plant.outputs[static_cast<std::size_t>(pair.output)].name ||
-          !(kp / ki_per_h > 0.0))
-        continue;
-      setting.kp = loop["reverse"].as<bool>(false) ? -kp : kp;
-      setting.ti_min = kp / ki_per_h * 60.0;
+  /// The rule's, softer ones, and those in charge where a PI holds the pair.
+  std::vector<Vector> piStarts() const {
+    std::vector<Vector> starts(4, Vector::Zero(2 * loops()));
+    for (Index p = 0; p < loops(); ++p) {
+      const bool stable = !elementOf(p).integrating && elementOf(p).time_constant >= 0.0;
+      for (std::size_t k = 1; k < starts.size(); ++k)
+        starts[k].segment(2 * p, 2) << -static_cast<double>(k),
+            stable ? 0.0 : static_cast<double>(k);
     }
+    Vector present = Vector::Zero(2 * loops());
+    for (Index p = 0; p < loops(); ++p) {
+      const PiSetting rule = ruleOf(p), now = inCharge(p, rule);
+      present.segment(2 * p, 2) << std::log2(now.kp / rule.kp), std::log2(now.ti_min / rule.ti_min);
+    }
+    if (present.allFinite()) starts.push_back(present);
+    return starts;
+  }
+
+  PiSetting inCharge(Index p, const PiSetting& otherwise) const {
+    const PlantInfo& plant = brief_.loop.plant_info;
+    const Pairing& pair = outline_.pairs[static_cast<std::size_t>(p)];
+    if (!brief_.closed) return otherwise;
+    const YAML::Node law = loadYaml(brief_.loop.resolved, brief_.loop.name)["controller"];
+    for (const auto& loop : law["loops"]) {
+      const double kp = loop["kp"].as<double>(0.0), ki_per_h = loop["ki_per_h"].as<double>(0.0);
+      if (loop["input"].as<std::string>("") ==
+              plant.inputs[static_cast<std::size_t>(pair.input)].name &&
+          loop["output"].as<std::string>("") ==
+              plant.outputs[static_cast<std::size_t>(pair.output)].name &&
+          kp / ki_per_h > 0.0)
+        return {loop["reverse"].as<bool>(false) ? -kp : kp, kp / ki_per_h * 60.0};
+    }
+    return otherwise;
   }
 
   std::string piText(const Vector& x) const {
@@ -355,15 +361,13 @@ class Designer {
 
   // ---- the predictive law
 
-  /// x: log10 of the moves' weight, log10 of a disturbance's effect over noise, then log2 of the
-  /// reference times of the held outputs.
-  void lawStart(Vector& start, Vector& width) const {
-    const auto held = static_cast<Index>(std::count(brief_.held.begin(), brief_.held.end(), true));
-    start = Vector::Zero(2 + held);
-    width = Vector::Constant(2 + held, 2.5);
-    start[0] = -1.0;
-    start[1] = 0.25;
-    width[1] = 1.0;
+  /// x: log10 of the moves' weight, in parts of what they cost, log10 of a disturbance's effect
+  /// over noise, then log2 of the reference times of the held outputs.
+  std::vector<Vector> lawStarts() const {
+    Vector softer = Vector::Ones(2 + std::count(brief_.held.begin(), brief_.held.end(), true));
+    softer[1] = -0.5;
+    const Vector start = 0.25 * Vector::Unit(softer.size(), 1);
+    return {start, start + softer, start + 2.0 * softer, start + 3.0 * softer};
   }
 
   std::string lawText(const Vector& x) const {
@@ -392,9 +396,8 @@ class Designer {
                 loadShare(models_.model, i);
     }
     for (Index j = 0; j < n_u; ++j) {
-      const double unit = 1.0 / (outline_.u_range[j] * outline_.u_range[j]);
-      move[j] = std::pow(10.0, x[0]) * unit * 10.0;
-      pull[j] = pull_ * unit;
+      move[j] = std::pow(10.0, x[0]) * params_.movement / (brief_.move[j] * brief_.move[j]);
+      pull[j] = pull_ / (outline_.u_range[j] * outline_.u_range[j]);
     }
     const double horizon =
         std::clamp(std::ceil(outline_.settling / Ts), kShortHorizon, kLongHorizon);
@@ -412,8 +415,10 @@ class Designer {
         brief_, "# Law of the commissioning of " + brief_.loop.name + ", on " + model_file_ + ".\n",
         {{"model", "{file: '" + model_file_ + "'}"},
          {"controller", c.str()},
-         {"guard", "{pi: {loops: " +
-                       piLoops(brief_, outline_, pi_.empty() ? piOf(piStart()) : pi_) + "}}"}});
+         {"guard",
+          "{pi: {loops: " +
+              piLoops(brief_, outline_, pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) +
+              "}}"}});
   }
 
   // ---- judging
@@ -435,7 +440,7 @@ class Designer {
 
   /// The loop on one model, asked for steps of all that is held, then for loads.
   LoopFile scenario(const std::string& text, const TsModel& model) const {
-    LoopFile loop = onModel(parseLoop(text, brief_.loop.name), model, models_.errors,
+    LoopFile loop = onModel(parseLoop(text, brief_.loop.name), model,
                             modelRest(models_.fits, countOf(brief_.loop.plant_info.inputs)));
     const double Ts = brief_.loop.plant_info.sample_time_s,
                  stretch_h = outline_.stretch * Ts / 3600.0;
@@ -453,7 +458,7 @@ class Designer {
     loop.setpoint.schedule.push_back({at(stretch++), rest, 0.0});
     for (Index i = 0; i < rest.size(); ++i) {
       if (!brief_.held[static_cast<std::size_t>(i)]) continue;
-      const double load = kLoad * outline_.y_scale[i] * loadShare(model, i);
+      const double load = outline_.load[i] * loadShare(model, i);
       Command command;
       command.name = {"load/" + brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name};
       command.value = {load};
@@ -465,10 +470,46 @@ class Designer {
     return loop;
   }
 
-  /// Mean square of the errors, in steps, plus that of the moves, in parts of what a step needs.
+  /// What acts on the outputs beside inputs, as the fits found it, n_d (samples + 1): with r their
+  /// autoregressive noise and p the shared pole of the elements, y = G u + r / (1 - p q). The load
+  /// of the model's equation that makes it is A r / (1 - p q), A the model's denominator.
+  Matrix noiseOf(const SimulationParams& plant, const TsModel& model, std::uint64_t seed) const {
+    const Index n_y = countOf(model.outputs), n = static_cast<Index>(plant.samples) + 1;
+    Matrix values = plant.disturbance_nominal.replicate(1, n);
+    for (Index i = 0; i < n_y; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const ProcessFit& fit = models_.fits[at];
+      double pole = fit.kind == ProcessKind::kIntegrating ? 1.0 : 0.0;
+      for (const ElementEstimate& e : fit.elements)
+        if (fit.kind == ProcessKind::kUnstable && e.seen)
+          pole = std::exp(-brief_.loop.plant_info.sample_time_s / e.element.time_constant);
+      Vector shape = Vector::Ones(1);
+      for (std::size_t k = 0; k < model.submodels[at].regressors.size(); ++k) {
+        const Regressor& own = model.submodels[at].regressors[k];
+        if (own.kind != SignalKind::kOutput) continue;
+        if (own.lag + 2 > shape.size()) shape.conservativeResizeLike(Vector::Zero(own.lag + 2));
+        shape[own.lag + 1] = -model.submodels[at].rules.front().coefficients[static_cast<Index>(k)];
+      }
+      if (pole > 0.0) shape.conservativeResize(shape.size() - 1);
+      for (Index k = 1; k < shape.size(); ++k) shape[k] += pole * shape[k - 1];
+      std::mt19937_64 engine = seededEngine(seed, {static_cast<std::uint64_t>(i)});
+      Vector r(n);
+      for (Index k = 0; k < n; ++k) {
+        r[k] = fit.one_step * standardNormal(engine);
+        const Index past = std::min(k, fit.noise.size());
+        r[k] += fit.noise.head(past).dot(r.segment(k - past, past).reverse());
+        const Index rows = std::min(k + 1, shape.size());
+        values(values.rows() - n_y + i, k) +=
+            shape.head(rows).dot(r.segment(k + 1 - rows, rows).reverse());
+      }
+    }
+    return values;
+  }
+
+  /// Mean square of the errors, in steps, plus that of the moves, in parts of the largest allowed.
   double cost(const std::string& text, const TsModel& model, std::uint64_t seed) const {
     LoopFile loop = scenario(text, model);
-    loop.simulation.noise_seed = seed;
+    loop.simulation.disturbance.values = noiseOf(loop.simulation, model, seed);
     const RunRecord record = runLoop(loop);
     if (!record.complete) return kFailed;
     double error = 0.0, moves = 0.0, beyond = 0.0;
@@ -489,12 +530,7 @@ class Designer {
         const Vector& u = s.action.input;
         const Vector& before = record.samples[k - 1].action.input;
         for (Index j = 0; j < u.size(); ++j) {
-          double need = kInfinity;  // input that a step of an output takes
-          for (Index i = 0; i < outline_.gain.rows(); ++i)
-            if (std::abs(outline_.gain(i, j)) > 0.0)
-              need = std::min(need, outline_.y_scale[i] / std::abs(outline_.gain(i, j)));
-          need = std::min(need, 0.3 * outline_.u_range[j]);
-          const double part = (u[j] - before[j]) / need;
+          const double part = (u[j] - before[j]) / brief_.move[j];
           moves += params_.movement * part * part;
         }
       }
@@ -516,153 +552,75 @@ class Designer {
     return costs;
   }
 
+  /// Half of what counts is the worst of the models tuned on.
+  double tunedCost(const std::string& text) const {
+    const std::vector<double> all = costsOver(text, tuned_);
+    const double sum = std::accumulate(all.begin(), all.end(), 0.0);
+    return 0.5 *
+           (sum / static_cast<double>(all.size()) + *std::max_element(all.begin(), all.end()));
+  }
+
+  /// The cost, dearer the less stable the loop is on one of `asked`. That takes several times as
+  /// long as the runs and is asked only of what is below `least`.
+  double value(const std::string& text, const std::vector<const TsModel*>& asked, double least,
+               double& peak) const {
+    const double cost = tunedCost(text);
+    if (cost >= least) return cost;
+    peak = worst(probes(text, asked)).worst_peak;
+    return cost * std::pow(std::max(std::min(peak, kMostPeak) / allowed_peak_, 1.0), kPeakPower);
+  }
+
   template <typename Text>
-  Vector searched(const std::string& what, const Vector& start, const Vector& width,
-                  const Text& text, DesignFigures& figures) const {
-    SearchParams search;
-    search.method = SearchMethod::kApso;
-    search.population = 8;
-    search.evaluations = params_.evaluations;
-    search.seed = params_.seed;
-    Index judged = 0;
-    const SearchResult result = runSearch(
-        search, start - width, start + width,
-        [&](const Matrix& points, Vector& costs) {
-          show(what + ": " + std::to_string(judged) + " of " + std::to_string(params_.evaluations) +
-               " settings judged");
-          judged += points.cols();
-          costs.resize(points.cols());
-          for (Index c = 0; c < points.cols(); ++c) {
-            const std::vector<double> all = costsOver(text(points.col(c)), tuned_);
-            double sum = 0.0, worst = 0.0;
-            for (const double v : all) {
-              sum += v;
-              worst = std::max(worst, v);
-            }
-            // Half of what counts is the worst of them, and a part what a plant further off costs.
-            const double own = 0.5 * (sum / static_cast<double>(all.size()) + worst);
-            costs[c] = (1.0 - kSpoiltShare) * own +
-                       kSpoiltShare * costsOver(text(points.col(c)), {&spoilt_}).front();
-          }
-          return true;
-        },
-        start);
-    figures.tuned = result.cost;
-    return result.best;
+  Vector leastOf(const std::vector<Vector>& settings, const Text& text,
+                 const std::vector<const TsModel*>& asked) const {
+    Vector best = settings.front();
+    double least = kInfinity, peak{};
+    for (const Vector& x : settings) {
+      const double cost = value(text(x), asked, least, peak);
+      if (cost < least) best = x;
+      least = std::min(least, cost);
+    }
+    return best;
   }
 
-  /// Those on which margins are asked: a probe takes as long as twenty runs.
-  void chooseProbed(const std::string& pi, const std::string& law) {
-    probed_ = tuned_;
-    std::vector<const TsModel*> rest = held_out_;
-    const std::vector<double> one = costsOver(pi, rest), other = costsOver(law, rest);
-    std::vector<std::size_t> order(rest.size());
-    for (std::size_t m = 0; m < order.size(); ++m) order[m] = m;
-    const auto worse = [](const std::vector<double>& costs) {
-      return [&costs](std::size_t a, std::size_t b) { return costs[a] > costs[b]; };
-    };
-    std::stable_sort(order.begin(), order.end(), worse(one));
-    probed_.push_back(rest[order.front()]);
-    const std::size_t first = order.front();
-    std::stable_sort(order.begin(), order.end(), worse(other));
-    probed_.push_back(rest[order.front() == first ? order[1] : order.front()]);
-  }
-
-  /// A plant that is hard to hold may not allow the peak that is asked for: then nothing may be
-  /// more sensitive than the control in charge, on the same models.
-  void allowWhatThereIs(Design& d) {
-    allowed_peak_ = params_.peak;
-    if (!hasPresent(brief_)) return;
-    DesignFigures present;
-    margins(brief_.loop.resolved, present, false);
-    d.present_peak = present.worst_peak;
-    if (std::isfinite(present.worst_peak))
-      allowed_peak_ = std::max(params_.peak, present.worst_peak);
-  }
-
-  /// Until all of them are stable enough. Where nothing helps the setting stays as it was tuned.
-  template <typename Text, typename Softer>
-  void soften(DesignFigures& figures, Vector& x, const Text& text, const Softer& softer) {
-    Vector at = x;
-    for (int k = 0; k <= kSoftenings; ++k) {
-      margins(text(at), figures, k < kSoftenings);
-      if (figures.worst_peak <= allowed_peak_) {
-        x = at;
-        return;
+  /// The cheapest setting found that is stable enough on the models tuned on, from the first of
+  /// `starts`, or from the best one where none was found. The model held out on which it is least
+  /// stable joins them where that is not enough, and the search goes on.
+  template <typename Text>
+  Vector searched(const std::string& what, const std::vector<Vector>& starts, const Text& text,
+                  DesignFigures& figures) const {
+    std::vector<const TsModel*> asked = tuned_, others = held_out_;
+    Vector x = starts.front();
+    int count = 0;
+    for (int round = 0;; ++round) {
+      Vector stable;
+      double cheapest = kInfinity;
+      const auto judge = [&](const Vector& at, double least) {
+        show(what + ": " + std::to_string(++count) + " settings");
+        double peak = kInfinity;
+        const double cost = value(text(at), asked, least, peak);
+        if (peak <= allowed_peak_ && cost < cheapest) {
+          cheapest = cost;
+          stable = at;
+        }
+        return cost;
+      };
+      x = simplexSearch(x, params_.evaluations / (round > 0 ? 3 : 1), judge);
+      const bool found = stable.size() > 0;
+      if (found) x = stable;
+      const std::vector<DesignFigures> more = probes(text(x), others);
+      const auto last = std::max_element(
+          more.begin(), more.end(),
+          [](const auto& p, const auto& q) { return p.worst_peak < q.worst_peak; });
+      if ((found && last->worst_peak <= allowed_peak_) || round == kMostRounds) {
+        figures = worst({worst(probes(text(x), asked)), worst(more)});
+        figures.tuned = tunedCost(text(x));
+        return x;
       }
-      const Vector next = softer(at, figures.worst_peak);
-      if (next == at) break;  // no way lowers it
-      at = next;
-    }
-    margins(text(x), figures, false);
-  }
-
-  /// x: log2 of gains and integral times. Of an integrator a lower gain alone swings more; of an
-  /// unstable lag the gain is what holds it.
-  Vector softerPi(Vector x) const {
-    for (Index p = 0; p < loops(); ++p) {
-      const ProcessElement& e = elementOf(p);
-      const bool unstable = !e.integrating && e.time_constant < 0.0;
-      if (!unstable) x[2 * p] -= 0.5;
-      if (unstable || e.integrating) x[2 * p + 1] += 0.5;
-    }
-    return x;
-  }
-
-  /// A step of the law's setting, and what it did to the sensitivity peak.
-  struct Softening {
-    Vector step;
-    double lowered{};          // the logarithm of the peak, when the step was chosen
-    double peak{};             // before the latest one
-    const TsModel* failing{};  // on this model
-  };
-
-  static double lowering(double from, double to) {
-    return std::log(std::min(from, kFailed) / std::min(to, kFailed));
-  }
-
-  /// The step is gone once more while it does what it did, for another model too: to choose takes
-  /// as long as ten steps.
-  Vector softerLaw(const Vector& x, double peak, Softening& way) const {
-    const bool helps =
-        way.failing != probed_.front() || lowering(way.peak, peak) >= kStillHelps * way.lowered;
-    if (way.step.size() == 0 || !helps) choose(x, peak, way);
-    way.peak = peak;
-    way.failing = probed_.front();
-    return x + way.step;
-  }
-
-  /// Costlier or cheaper moves, a slower or faster observer, slower or faster references: the one
-  /// of the six with which the peak on the model that failed falls most for what it costs, no step
-  /// if it falls with none. What runs away may need the faster ones.
-  void choose(const Vector& x, double peak, Softening& way) const {
-    Matrix ways = Matrix::Zero(x.size(), 6);
-    ways(0, 0) = std::log10(kSofter);
-    ways(1, 1) = -0.5 * std::log10(kSofter);
-    ways.col(2).tail(x.size() - 2).setConstant(0.5 * std::log2(kSofter));
-    ways.rightCols(3) = -ways.leftCols(3);
-    Vector lowered(ways.cols());
-    parallelFor(static_cast<std::size_t>(ways.cols()), params_.threads, [&](std::size_t i) {
-      const auto at = static_cast<Index>(i);
-      const DesignFigures reached = probe(lawText(x + ways.col(at)), *probed_.front());
-      lowered[at] = lowering(peak, reached.worst_peak);
-    });
-    const auto costOf = [&](const Vector& at) {
-      const std::vector<double> costs = costsOver(lawText(at), tuned_);
-      return std::accumulate(costs.begin(), costs.end(), 0.0);
-    };
-    way.step.setZero(x.size());
-    if (lowered.maxCoeff() <= 0.0) return;
-    const double cost = costOf(x);
-    double best = 0.0;
-    for (Index i = 0; i < ways.cols(); ++i) {
-      if (lowered[i] <= 0.0) continue;
-      const double worth =
-          lowered[i] / std::max(costOf(x + ways.col(i)) / cost - 1.0, kLeastDearer);
-      if (worth <= best) continue;
-      best = worth;
-      way.step = ways.col(i);
-      way.lowered = lowered[i];
+      if (!found && round == 0) x = leastOf(starts, text, asked);
+      if (!found) continue;
+      asked.push_back(others[static_cast<std::size_t>(last - more.begin())]);
+      others.erase(others.begin() + (last - more.begin()));
     }
   }
 
@@ -671,55 +629,67 @@ class Designer {
     loop.simulation.disturbance_commands.clear();
     return atRest(loop);
   }
+  std::vector<DesignFigures> probes(const std::string& text,
+                                    const std::vector<const TsModel*>& models) const {
+    std::vector<DesignFigures> each(models.size());
+    parallelFor(each.size(), params_.threads,
+                [&](std::size_t m) { each[m] = probe(text, *models[m]); });
+    return each;
+  }
+  static DesignFigures worst(const std::vector<DesignFigures>& each) {
+    DesignFigures all;
+    all.least_gain = all.least_delay_s = kInfinity;
+    for (const DesignFigures& one : each) {
+      all.worst_peak = std::max(all.worst_peak, one.worst_peak);
+      all.least_gain = std::min(all.least_gain, one.least_gain);
+      all.least_delay_s = std::min(all.least_delay_s, one.least_delay_s);
+    }
+    return all;
+  }
 
-  /// With `early` the model that failed last ends it if it fails again. The worst one is the first
-  /// one the next time.
-  void margins(const std::string& text, DesignFigures& figures, bool early) {
-    std::vector<DesignFigures> each{probe(text, *probed_.front())};
-    if (!early || each.front().worst_peak <= allowed_peak_) {
-      each.resize(probed_.size());
-      parallelFor(each.size() - 1, params_.threads,
-                  [&](std::size_t m) { each[m + 1] = probe(text, *probed_[m + 1]); });
+  /// Costs over others, means of the pairs' ratios, and half widths of their 95 % intervals.
+  struct Ratio {
+    double mean{}, half{};  // logarithms
+    bool isBetter() const { return mean + half < 0.0; }
+  };
+  static Ratio ratioOf(const std::vector<double>& costs, const std::vector<double>& others) {
+    const auto n = static_cast<double>(costs.size());
+    double mean = 0.0, square = 0.0;
+    for (std::size_t m = 0; m < costs.size(); ++m) {
+      const double r = std::log(costs[m] / others[m]);
+      mean += r / n;
+      square += r * r / n;
     }
-    std::size_t worst = 0;
-    figures.least_gain = figures.least_delay_s = kInfinity;
-    for (std::size_t m = 0; m < each.size(); ++m) {
-      if (each[m].worst_peak > each[worst].worst_peak) worst = m;
-      figures.least_gain = std::min(figures.least_gain, each[m].least_gain);
-      figures.least_delay_s = std::min(figures.least_delay_s, each[m].least_delay_s);
-    }
-    figures.worst_peak = each[worst].worst_peak;
-    std::swap(probed_.front(), probed_[worst]);
+    return {mean, normalBound(0.95) * std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0))};
   }
 
   void compare(Design& d) const {
     d.law_figures.costs = costsOver(d.law, held_out_);
     d.pi_figures.costs = costsOver(d.pi, held_out_);
-    const auto n = static_cast<double>(held_out_.size());
-    double mean = 0.0, square = 0.0;  // of the logarithm of the ratio
-    for (std::size_t m = 0; m < held_out_.size(); ++m) {
-      const double r = std::log(d.law_figures.costs[m] / d.pi_figures.costs[m]);
-      mean += r / n;
-      square += r * r / n;
-    }
-    const double half =
-        normalBound(0.95) * std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0));
-    d.ratio = std::exp(mean);
-    d.ratio_bound = d.ratio * std::expm1(half);
-    const bool pi_holds = d.pi_figures.worst_peak <= allowed_peak_;
-    const bool law_holds = d.law_figures.worst_peak <= allowed_peak_;
-    d.offers_law = law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
-    d.offers_pi = !d.offers_law && pi_holds;
-    if (!law_holds)
-      d.remarks.push_back("the law is not stable on every model with a sensitivity peak below " +
-                          shortText(allowed_peak_));
-    if (!pi_holds)
-      d.remarks.push_back("the PI is not stable on every model with a sensitivity peak below " +
-                          shortText(allowed_peak_));
+    const Ratio ratio = ratioOf(d.law_figures.costs, d.pi_figures.costs);
+    d.ratio = std::exp(ratio.mean);
+    d.ratio_bound = d.ratio * std::expm1(ratio.half);
+    if (hasPresent(brief_)) d.present_costs = costsOver(brief_.loop.resolved, held_out_);
+    const auto isFit = [&](const DesignFigures& figures, const std::string& name) {
+      const bool stable = figures.worst_peak <= allowed_peak_;
+      const bool better =
+          d.present_costs.empty() || ratioOf(figures.costs, d.present_costs).isBetter();
+      if (!stable)
+        d.remarks.push_back("the " + name +
+                            " is not stable on every model with a sensitivity peak below " +
+                            shortText(allowed_peak_));
+      else if (!better)
+        d.remarks.push_back("the " + name + " does not beat the control in charge");
+      return stable && better;
+    };
+    const bool law = isFit(d.law_figures, "law"), pi = isFit(d.pi_figures, "PI");
+    d.offers_law = law && (!pi || ratio.isBetter());
+    d.offers_pi = !d.offers_law && pi;
     d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
                                            " of what the PI does"
-                        : d.offers_pi ? "the PI is offered: the law does not beat it"
-                                      : kNeither);
+                        : !d.offers_pi ? kNeither
+                        : law          ? "the PI is offered: the law does not beat it"
+                                       : "the PI is offered");
   }
 
   void lookAtDirections(Design& d) {
@@ -753,10 +723,9 @@ class Designer {
   const ProcessModels& models_;
   DesignParams params_;
   Outline outline_;
-  std::vector<const TsModel*> tuned_, held_out_, probed_;
-  TsModel spoilt_;
+  std::vector<const TsModel*> tuned_, held_out_;
   std::vector<PiSetting> pi_;
-  double pull_{}, allowed_peak_{};
+  double pull_{}, allowed_peak_;
   bool refuted_{false};  // too few of the models hold under the present control
 };
 
@@ -767,18 +736,18 @@ bool presentHolds(const CommissioningBrief& brief, const ProcessModels& models) 
   const LinearPoint rest = modelRest(models.fits, countOf(brief.loop.plant_info.inputs));
   const auto held =
       std::count_if(models.ensemble.begin(), models.ensemble.end(), [&](const TsModel& member) {
-        LoopFile loop = onModel(brief.loop, member, models.errors, rest);
+        LoopFile loop = onModel(brief.loop, member, rest);
         loop.setpoint.initial = loop.simulation.initial_state;
         return atRest(loop).worst_peak <= kMostPresent;
       });
   return 2 * held >= static_cast<std::ptrdiff_t>(models.ensemble.size());
 }
 
-LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
-                 const LinearPoint& rest) {
+LoopFile onModel(const LoopFile& loop, const TsModel& model, const LinearPoint& rest) {
   LoopFile on = loop;
   on.external_plant = false;
   SimulationParams& sim = on.simulation;
+  sim.samples = 1;  // a loop that runs may have no end
   const InputLimits& limits = sim.actuator.limits;
   // A run leaves the operator's limits without ending: that is judged.
   std::vector<SignalInfo> ranges;
@@ -790,10 +759,10 @@ LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& 
     ranges.push_back({model.inputs[j].name, model.inputs[j].unit,
                       std::max(-1e12, limits.lower[static_cast<Index>(j)]),
                       std::min(1e12, limits.upper[static_cast<Index>(j)])});
-  const auto made = std::make_shared<ModelPlant>(model, errors, ranges);
+  const auto made = std::make_shared<ModelPlant>(model, ModelErrors{}, ranges);
   const PlantDescription& about = made->description();
-  sim.factory = [model, errors, ranges](const PlantParameters&) {
-    return std::make_unique<ModelPlant>(model, errors, ranges);
+  sim.factory = [model, ranges](const PlantParameters&) {
+    return std::make_unique<ModelPlant>(model, ModelErrors{}, ranges);
   };
   sim.parameters.clear();
   sim.outputs = namesOf(model.outputs);
@@ -808,17 +777,8 @@ LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& 
   sim.disturbance_nominal.setZero(n_d);
   sim.disturbance_nominal.head(rest.disturbances.size()) = rest.disturbances;
   sim.disturbance_noise_std.setZero(n_d);
-  for (std::size_t i = 0; i < about.disturbances.size(); ++i) {
-    const auto noise = about.noise_std.find(about.disturbances[i].name);
-    if (noise != about.noise_std.end())
-      sim.disturbance_noise_std[static_cast<Index>(i)] = noise->second;
-  }
   sim.noise_std.setZero(countOf(model.outputs));
   sim.initial_state = rest.outputs;
-  for (std::size_t i = 0; i < model.outputs.size(); ++i) {
-    const auto noise = about.noise_std.find(model.outputs[i].name);
-    if (noise != about.noise_std.end()) sim.noise_std[static_cast<Index>(i)] = noise->second;
-  }
   sim.actuator.initial = rest.inputs;
   on.setpoint.schedule.clear();
   on.setpoint.commands.clear();
@@ -854,6 +814,7 @@ OrderedJson toJson(const Design& d, const PlantInfo& plant) {
           {"models_probed", d.probed},
           {"models_refuted", d.refuted},
           {"present_sensitivity_peak", numberOrNull(d.present_peak)},
+          {"present_costs", d.present_costs},
           {"law", figures(d.law_figures)},
           {"pi", figures(d.pi_figures)},
           {"weak_directions", weak},

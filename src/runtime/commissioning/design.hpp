@@ -36,13 +36,16 @@ struct Design {
   DesignFigures law_figures, pi_figures;
   double ratio{kInfinity};  ///< cost of the law over that of the PI, mean of the held-out pairs
   double ratio_bound{kInfinity};  ///< half width of its 95 % interval
-  bool offers_law{};  ///< it is stable on all members, and better than the PI beyond that bound
-  bool offers_pi{};   ///< the law is not offered, and the PI is stable on all members
+  /// Stable on all members, and better than the control in charge and the PI beyond the bounds.
+  bool offers_law{};
+  /// The law is not offered, and the PI is stable on all members and better than that control.
+  bool offers_pi{};
+  std::vector<double> present_costs;  ///< as `costs`, of the control in charge; empty: none
   std::vector<std::string> remarks;
   std::vector<WeakDirection> weak;
   double present_peak{kInfinity};  ///< of the control in charge; infinite: none, or not looked at
   std::size_t refuted{};  ///< members of the ensemble on which the control in charge is not stable
-  std::size_t probed{};   ///< models: the likeliest, those tuned on, the costliest held out
+  std::size_t probed{};   ///< models: the likeliest, and all members that were not refuted
 };
 
 /// @throws InputError if the plant's loop file cannot be rewritten, or if no output is to be held.
@@ -55,7 +58,6 @@ OrderedJson toJson(const Design& design, const PlantInfo& plant);
 bool presentHolds(const CommissioningBrief& brief, const ProcessModels& models);
 
 /// The loop with a model in the place of its plant, which begins at `rest`, with neither schedule.
-LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
-                 const LinearPoint& rest);
+LoopFile onModel(const LoopFile& loop, const TsModel& model, const LinearPoint& rest);
 
 }  // namespace fpc

@@ -57,21 +57,6 @@ TsModel modelOf(const TsModel& names, const std::vector<ProcessFit>& fits, int m
   return linearModel(names, all, point);
 }
 
-ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members) {
-  ProcessModels models;
-  models.fits = fits;
-  models.model = modelOf(names, fits, -1);
-  for (int member = 0; member < members; ++member)
-    models.ensemble.push_back(modelOf(names, fits, member));
-  models.errors.one_step.resize(countOf(names.outputs));
-  models.errors.free_run.resize(countOf(names.outputs));
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    models.errors.one_step[static_cast<Index>(i)] = fits[i].one_step;
-    models.errors.free_run[static_cast<Index>(i)] = fits[i].free_run;
-  }
-  return models;
-}
-
 OrderedJson elementJson(const ProcessElement& e) {
   return {{"gain", e.gain},   {"time_constant_s", e.time_constant}, {"second_s", e.second},
           {"lead_s", e.lead}, {"dead_time_s", e.dead_time},         {"integrating", e.integrating}};
@@ -126,6 +111,10 @@ Matrix gainsOf(const std::vector<ProcessFit>& fits, Index inputs) {
   return gains;
 }
 
+Vector vectorOf(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), countOf(values));
+}
+
 /// What toJson() made of them.
 std::vector<ProcessFit> fitsOf(const OrderedJson& json) {
   std::vector<ProcessFit> fits;
@@ -138,8 +127,8 @@ std::vector<ProcessFit> fitsOf(const OrderedJson& json) {
     fit.one_step = output.at("one_step");
     fit.free_run = output.at("free_run");
     fit.output = output.at("rest");
-    const std::vector<double> mean = output.at("inputs_mean");
-    fit.input = Eigen::Map<const Vector>(mean.data(), static_cast<Index>(mean.size()));
+    fit.noise = vectorOf(output.at("noise"));
+    fit.input = vectorOf(output.at("inputs_mean"));
     for (const auto& element : output.at("elements")) {
       ElementEstimate e;
       e.element = elementOf(element);
@@ -166,6 +155,15 @@ LinearPoint modelRest(const std::vector<ProcessFit>& fits, Index inputs) {
   for (std::size_t i = 0; i < fits.size(); ++i)
     point.outputs[static_cast<Index>(i)] = fits[i].output;
   return point;
+}
+
+ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members) {
+  ProcessModels models;
+  models.fits = fits;
+  models.model = modelOf(names, fits, -1);
+  for (int member = 0; member < members; ++member)
+    models.ensemble.push_back(modelOf(names, fits, member));
+  return models;
 }
 
 ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members,
@@ -200,16 +198,6 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
     models = modelsOf(names, fits, members);
   }
   return holds(models) ? models : found;
-}
-
-TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s) {
-  std::vector<ProcessFit> fits = models.fits;
-  for (ProcessFit& fit : fits)
-    for (std::size_t j = 0; j < models.model.inputs.size(); ++j) {
-      fit.elements[j].element.gain *= gain_factor;
-      fit.elements[j].element.dead_time += more_dead_time_s;
-    }
-  return modelOf(models.model, fits, -1);
 }
 
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
@@ -255,7 +243,7 @@ OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant) {
                           {"rows", fit.rows},
                           {"one_step", fit.one_step},
                           {"free_run", fit.free_run},
-                          {"noise_terms", fit.noise.size()},
+                          {"noise", std::vector<double>(fit.noise.begin(), fit.noise.end())},
                           {"rest", fit.output},
                           {"elements", OrderedJson::array()}};
     for (std::size_t j = 0; j < fit.elements.size(); ++j) {
@@ -297,7 +285,6 @@ ProcessModels readModels(const std::string& folder) {
   }
   const IdentifiedModel found = readIdentified(inFolder(folder, "model.yaml"));
   models.model = found.model;
-  models.errors = modelErrorsOf(found);
   for (std::size_t m = 0; fs::is_regular_file(memberFile(folder, m)); ++m)
     models.ensemble.push_back(readIdentified(memberFile(folder, m)).model);
   return models;

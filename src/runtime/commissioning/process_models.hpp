@@ -19,8 +19,10 @@ struct ProcessModels {
   std::vector<ProcessFit> fits;   ///< one per output: elements of inputs, then disturbances
   TsModel model;                  ///< the likeliest
   std::vector<TsModel> ensemble;  ///< equally likely ones
-  ModelErrors errors;
 };
+
+/// `names` says name, sample time and signals; `members` of each fit's ensemble make one.
+ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members);
 
 /// While the present control does not hold what was found, outputs called unstable, then those
 /// called integrating, are taken for another kind. Where that does not help, the kinds that the
@@ -33,10 +35,6 @@ OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant);
 void writeModels(const ProcessModels& models, const std::string& folder);
 /// What writeModels() wrote, with model.json. @throws InputError naming the file.
 ProcessModels readModels(const std::string& folder);
-
-/// The likeliest model with other gains and more dead time: what a law is to bear beside the
-/// ensemble.
-TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s);
 
 /// Where the models rest, whatever their gains.
 LinearPoint modelRest(const std::vector<ProcessFit>& fits, Eigen::Index inputs);
