@@ -1,10 +1,10 @@
 #include "analysis/closed_loop.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/decompositions.hpp"
 #include "control/fmbpc/coincidence.hpp"
 #include "fmbpc/base/input_error.hpp"
 
@@ -16,7 +16,7 @@ Eigenvalues eigenvalues(MatrixRef A) {
     return Eigenvalues(static_cast<std::size_t>(A.rows()),
                        {std::numeric_limits<double>::quiet_NaN(), 0.0});
   if (A.rows() == 0) return {};
-  const Eigen::VectorXcd found = Eigen::EigenSolver<Matrix>(A, false).eigenvalues();
+  const Eigen::VectorXcd found = eigenOf(A).eigenvalues();
   Eigenvalues values(found.data(), found.data() + found.size());
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
     if (std::abs(a) != std::abs(b)) return std::abs(a) > std::abs(b);

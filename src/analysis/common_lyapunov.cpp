@@ -1,13 +1,13 @@
 #include "analysis/common_lyapunov.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "analysis/closed_loop.hpp"
 #include "analysis/csdp.hpp"
+#include "base/decompositions.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -34,7 +34,7 @@ Matrix roundCoordinates(const std::vector<Matrix>& maps) {
   return factor.matrixU();
 }
 
-double norm2(const Matrix& A) { return Eigen::JacobiSVD<Matrix>(A).singularValues()[0]; }
+double norm2(const Matrix& A) { return svdOf(A).singularValues()[0]; }
 
 }  // namespace
 

@@ -1,11 +1,11 @@
 #include "analysis/curve.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 #include <exception>
 
 #include "analysis/linearise.hpp"
+#include "base/decompositions.hpp"
 
 namespace fpc {
 namespace {
@@ -86,7 +86,7 @@ bool Curve::complete(const Vector& z, VectorRef direction, TracedPoint& point) c
   if (rows.minCoeff() == 0.0) return false;
   J = (rows.cwiseInverse().asDiagonal() * J).eval();
   point.z = z;
-  point.tangent = Eigen::JacobiSVD<Matrix>(J, Eigen::ComputeFullV).matrixV().col(size());
+  point.tangent = svdOf(J, Eigen::ComputeFullV).matrixV().col(size());
   if (point.tangent.dot(direction) < 0.0) point.tangent = -point.tangent;
   const Vector plain = z.cwiseProduct(sizes_);
   point.at.state = plain.head(size());

@@ -1,4 +1,5 @@
 // Plant type `model`: plant.model is a model file, plant.ranges where its signals can be.
+#include "config/design_library.hpp"
 #include "config/identified_file.hpp"
 #include "config/read.hpp"
 
@@ -28,7 +29,7 @@ IdentifiedModel readFound(YamlSection& plant) {
   need(plant, "model", "a model file");
   plant.text("model", file);
   try {
-    return readIdentified(file);
+    return designLibrary(plant.where("type")).read_identified(file);
   } catch (const InputError& e) {
     throw InputError(plant.where("model") + ": " + e.what());
   }

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kDifference = 1e-5;  // of a state, for the Jacobian
+constexpr double kStateStep = 1e-5;  // of a state, for the Jacobian
 
 }  // namespace
 
@@ -85,7 +85,7 @@ void OutputEstimator::move(VectorRef input, VectorRef disturbances, Vector& stat
 
 void OutputEstimator::predict(VectorRef input, VectorRef disturbances) {
   for (Index j = 0; j < state_.size(); ++j) {
-    const double h = kDifference * std::max(1.0, std::abs(state_[j]));
+    const double h = kStateStep * std::max(1.0, std::abs(state_[j]));
     moved_ = state_;
     moved_[j] += h;
     move(input, disturbances, moved_);

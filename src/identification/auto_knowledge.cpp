@@ -1,10 +1,10 @@
 #include "identification/auto_knowledge.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <memory>
 
+#include "base/decompositions.hpp"
 #include "identification/knowledge_map.hpp"
 
 namespace fpc {
@@ -21,8 +21,7 @@ void shrinkRules(const RecurrentShape& shape, double radius, Vector& p) {
     Matrix companion = Matrix::Zero(n, n);
     companion.diagonal(-1).setOnes();
     companion.row(0) = p.segment(shape.at(i, 0), n).transpose();
-    const double largest =
-        Eigen::EigenSolver<Matrix>(companion, false).eigenvalues().cwiseAbs().maxCoeff();
+    const double largest = eigenOf(companion).eigenvalues().cwiseAbs().maxCoeff();
     if (!(largest > radius)) continue;
     for (Index j = 0; j < n; ++j)
       p[shape.at(i, 0) + j] *= std::pow(0.999 * radius / largest, static_cast<double>(j + 1));
@@ -76,7 +75,7 @@ bool ruleAgrees(const AutoData& data, const Fitted& fitted, const Vector& p, Ind
     A.row(r) = p.segment(shape.at(rule, r), n).transpose();
     B.row(r) = p.segment(shape.at(rule, r) + n, m).transpose();
   }
-  const double largest = Eigen::EigenSolver<Matrix>(A, false).eigenvalues().cwiseAbs().maxCoeff();
+  const double largest = eigenOf(A).eigenvalues().cwiseAbs().maxCoeff();
   if (data.known.max_pole > 0.0 && !(largest <= data.known.max_pole)) return false;
   bool signs = false;
   for (Index j = 0; j < m; ++j) signs = signs || signOf(data.known, j) != 0;

@@ -1,9 +1,9 @@
 // Processes that do not come to rest: how far a run may go before it says nothing.
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "identification/auto_candidate.hpp"
 
 namespace fpc {
@@ -28,7 +28,7 @@ SlowestPoles polesOf(const Eigen::Ref<const Vector>& a) {
   companion.row(0) = a.transpose();
   for (Index i = 1; i < n; ++i) companion(i, i - 1) = 1.0;
   SlowestPoles slowest;
-  const Eigen::VectorXcd poles = companion.eigenvalues();
+  const Eigen::VectorXcd poles = eigenOf(companion).eigenvalues();
   for (const auto& pole : poles) {
     slowest.outside = std::max(slowest.outside, std::abs(pole));
     if (std::abs(pole.imag()) < 1e-6) slowest.real = std::max(slowest.real, pole.real());

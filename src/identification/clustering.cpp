@@ -2,12 +2,12 @@
 #include "identification/clustering.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "base/decompositions.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "identification/cluster_pass.hpp"
 
@@ -24,7 +24,7 @@ double uniform(std::mt19937_64& generator) {
 
 /// Eigenvalues from below, so that a flat cluster keeps an invertible covariance.
 Matrix bounded(const Matrix& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(covariance);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen = symmetricEigenOf(covariance);
   Vector values = eigen.eigenvalues();
   const double floor =
       std::max(values.maxCoeff() / kLargestCondition, std::numeric_limits<double>::min());
@@ -35,8 +35,7 @@ Matrix bounded(const Matrix& covariance) {
 
 /// det(F)^(1/n)
 double meanSpread(const Matrix& covariance) {
-  const Vector values =
-      Eigen::SelfAdjointEigenSolver<Matrix>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vector values = symmetricEigenOf(covariance, Eigen::EigenvaluesOnly).eigenvalues();
   return std::exp(values.array().max(std::numeric_limits<double>::min()).log().mean());
 }
 

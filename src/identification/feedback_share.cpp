@@ -1,10 +1,10 @@
 #include "identification/feedback_share.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "base/order_statistics.hpp"
 
 namespace fpc {
@@ -71,7 +71,7 @@ Vector leftOver(const RegressionRows& rows, Index columns, const std::vector<Ind
     a.row(i) = rows.regressors.row(kept[static_cast<std::size_t>(i)]).head(columns);
     b[i] = rows.target[kept[static_cast<std::size_t>(i)]];
   }
-  const Vector theta = a.colPivHouseholderQr().solve(b);
+  const Vector theta = solvedByPivotedQr(a, b);
   return rows.target - rows.regressors.leftCols(columns) * theta;
 }
 

@@ -1,9 +1,9 @@
 // Clusters as sets on all antecedents at once. Source: babuska1998,
 // sec. 4.4.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "identification/partition.hpp"
 
 namespace fpc {
@@ -48,8 +48,8 @@ Matrix covarianceOf(MatrixRef antecedents, const Clusters& clusters, Index clust
 /// Inverse in units of the deviations, where directions can be compared; exactly symmetric.
 Matrix boundedInverse(const Matrix& covariance, const Vector& deviation) {
   const Vector unit = deviation.unaryExpr([](double d) { return d > 0.0 ? 1.0 / d : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(unit.asDiagonal() * covariance *
-                                                    unit.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen =
+      symmetricEigenOf(unit.asDiagonal() * covariance * unit.asDiagonal());
   const Vector inverse = eigen.eigenvalues().cwiseMax(kThinnest * kThinnest).cwiseInverse();
   const Matrix S = unit.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
                    eigen.eigenvectors().transpose() * unit.asDiagonal();

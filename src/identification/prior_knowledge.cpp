@@ -246,13 +246,6 @@ class KnowledgeBuilder {
 
 }  // namespace
 
-bool PriorKnowledge::empty() const {
-  const auto unknown = [](int s) { return s == 0; };
-  return std::all_of(gain.begin(), gain.end(), unknown) &&
-         std::all_of(monotone.begin(), monotone.end(), unknown) && !(max_pole > 0.0) &&
-         steady.empty();
-}
-
 KnowledgeRows knowledgeRows(const OutputModel& model, int output, const DataSet& data,
                             const PriorKnowledge& known) {
   return KnowledgeBuilder(model, output, data, known).build();

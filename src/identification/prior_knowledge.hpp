@@ -2,6 +2,7 @@
 // model: linear ones are kept exactly by a quadratic programme, poles of high order by small steps.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,12 @@ struct PriorKnowledge {
   double max_pole{};          ///< > 0: no pole of a rule lies outside this radius
   std::vector<KnownRest> steady;
 
-  bool empty() const;
+  bool empty() const {
+    const auto unknown = [](int s) { return s == 0; };
+    return std::all_of(gain.begin(), gain.end(), unknown) &&
+           std::all_of(monotone.begin(), monotone.end(), unknown) && !(max_pole > 0.0) &&
+           steady.empty();
+  }
 };
 
 /// lower <= A theta <= upper on the stacked [coefficients, offset] of all rules, whose sets stay.

@@ -1,10 +1,10 @@
 #include "identification/record_faults.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "base/order_statistics.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -184,7 +184,7 @@ std::vector<Collinear> collinearCauses(const DataSet& data) {
     const Vector about = b.array() - b.mean();
     const double total = about.squaredNorm();
     if (!(total > 0.0)) continue;
-    const double left = (b - a * a.colPivHouseholderQr().solve(b)).squaredNorm();
+    const double left = (b - a * solvedByPivotedQr(a, b)).squaredNorm();
     if (!(1.0 - left / total > kExplained)) continue;
     Collinear pair{c, -1, 1.0 - left / total};
     double strongest = -1.0;

@@ -1,11 +1,11 @@
 #include "identification/spike_influence.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "base/decompositions.hpp"
 #include "base/order_statistics.hpp"
 
 namespace fpc {
@@ -59,7 +59,7 @@ class Judge {
       b[i] = values_(k + 1, output_);
     }
     if (n < 2 * size()) return;
-    theta_ = a.colPivHouseholderQr().solve(b);
+    theta_ = solvedByPivotedQr(a, b);
     variance_ = (b - a * theta_).squaredNorm() / static_cast<double>(n);
   }
 
@@ -152,7 +152,7 @@ class PeakModel {
         a.row(i) = rowAt(values_.col(output_), kept[static_cast<std::size_t>(i)]).transpose();
         b[i] = values_(kept[static_cast<std::size_t>(i)], output_);
       }
-      theta_ = a.colPivHouseholderQr().solve(b);
+      theta_ = solvedByPivotedQr(a, b);
       const Vector sizes = (b - a * theta_).cwiseAbs();
       const double most =
           kPeakTrim * upperMedian(std::vector<double>(sizes.data(), sizes.data() + n));

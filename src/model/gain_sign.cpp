@@ -1,8 +1,8 @@
 #include "model/gain_sign.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/model/local_model.hpp"
@@ -58,7 +58,7 @@ std::string weakDirection(const TsModel& model, const Measurement& at) {
     const double range = output.upper - output.lower;
     if (std::isfinite(range) && range > 0.0) gains.row(i) /= range;
   }
-  const Eigen::JacobiSVD<Matrix> svd(gains, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Matrix> svd = svdOf(gains, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Vector& sizes = svd.singularValues();
   const Eigen::Index last = sizes.size() - 1;
   if (!(sizes[0] > 0.0) || sizes[last] >= kWeak * sizes[0]) return "";

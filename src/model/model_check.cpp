@@ -1,9 +1,9 @@
 #include "model/model_check.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
+#include "base/decompositions.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/model/local_model.hpp"
@@ -20,7 +20,7 @@ double largestPole(const TsModel& model, const Measurement& at) {
   local.blend(state, loads);
   const Matrix& A = local.affine().A;
   if (!A.allFinite()) return std::numeric_limits<double>::infinity();
-  const Eigen::EigenSolver<Matrix> solver(A, false);
+  const Eigen::EigenSolver<Matrix> solver = eigenOf(A);
   if (solver.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
   return solver.eigenvalues().cwiseAbs().maxCoeff();
 }

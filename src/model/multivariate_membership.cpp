@@ -1,10 +1,10 @@
 #include "fmbpc/model/multivariate_membership.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/decompositions.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -57,8 +57,8 @@ bool isSemidefinite(const Matrix& S) {
   for (Index i = 0; i < S.rows(); ++i)
     if (S(i, i) == 0.0 && (S.row(i).array() != 0.0).any()) return false;
   const Matrix scaled = withUnitDiagonal(S);
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().minCoeff() >= -kNegativeEigenvalue * static_cast<double>(S.rows());
+  const Vector values = symmetricEigenOf(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  return values.minCoeff() >= -kNegativeEigenvalue * static_cast<double>(S.rows());
 }
 
 }  // namespace
@@ -89,7 +89,8 @@ double MultivariateMembership::projectedPrecision(Index variable) const {
   Matrix S = withUnitDiagonal(inverse_covariance);
   S.row(variable).swap(S.row(n - 1));
   S.col(variable).swap(S.col(n - 1));
-  const Eigen::SelfAdjointEigenSolver<Matrix> rest(S.topLeftCorner(n - 1, n - 1));
+  const Eigen::SelfAdjointEigenSolver<Matrix> rest =
+      symmetricEigenOf(S.topLeftCorner(n - 1, n - 1));
   const Vector shadow = rest.eigenvectors().transpose() * S.col(n - 1).head(n - 1);
   double left = S(n - 1, n - 1);
   for (Index i = 0; i + 1 < n; ++i)

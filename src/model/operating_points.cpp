@@ -1,10 +1,10 @@
 #include "model/operating_points.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "fmbpc/model/local_model.hpp"
 
 namespace fpc {
@@ -55,7 +55,7 @@ bool settle(LocalModel& local, const OperatingPoint& at, Vector& state) {
 }
 
 void addPoles(const Matrix& A, double sample_time_s, OperatingPoint& point) {
-  const Eigen::VectorXcd values = A.eigenvalues();
+  const Eigen::VectorXcd values = eigenOf(A).eigenvalues();
   for (const auto& pole : values)
     if (std::abs(pole) > kTinyPole) point.poles.push_back(pole);
   std::sort(point.poles.begin(), point.poles.end(), [](const auto& a, const auto& b) {

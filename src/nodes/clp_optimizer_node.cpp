@@ -1,4 +1,4 @@
-#include "ros/clp_optimizer.hpp"
+#include "ros/run_node.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::ClpOptimizer>(argc, argv, "clp_optimizer");

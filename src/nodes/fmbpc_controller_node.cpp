@@ -1,4 +1,4 @@
-#include "ros/controller_node.hpp"
+#include "ros/run_node.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::ControllerNode>(argc, argv, "fmbpc_controller");

@@ -1,4 +1,4 @@
-#include "ros/loop_recorder.hpp"
+#include "ros/run_node.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::LoopRecorder>(argc, argv, "loop_recorder");

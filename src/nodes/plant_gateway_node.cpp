@@ -1,4 +1,4 @@
-#include "ros/gateway_node.hpp"
+#include "ros/run_node.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::GatewayNode>(argc, argv, "plant_gateway");

@@ -1,4 +1,4 @@
-#include "ros/plant_simulator.hpp"
+#include "ros/run_node.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::PlantSimulator>(argc, argv, "plant_simulator");

@@ -1,4 +1,4 @@
-#include "ros/target_optimizer.hpp"
+#include "ros/run_node.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::TargetOptimizer>(argc, argv, "target_optimizer");

@@ -2,11 +2,11 @@
 // reflections.
 #include "optim/least_squares.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/decompositions.hpp"
 #include "optim/qp_kernels.hpp"
 
 namespace fpc {
@@ -40,7 +40,7 @@ double largestEigenvalue(Eigen::Index n, const Apply& apply) {
 }
 
 void judge(const Matrix& scaled, LeastSquaresSolution& solution) {
-  Eigen::ColPivHouseholderQR<Matrix> qr(scaled);
+  Eigen::ColPivHouseholderQR<Matrix> qr = pivotedQrOf(scaled);
   qr.setThreshold(kRankTolerance);
   solution.rank = qr.rank();
   solution.condition = std::numeric_limits<double>::infinity();
@@ -121,9 +121,9 @@ LeastSquaresSolution LeastSquares::solve(double ridge) {
   right.head(n_ + 1) = stack_.col(n_).head(n_ + 1);
   solution.theta = Vector::Zero(n_);
   if (system.isZero(0.0)) return solution;  // of which Eigen 3.3 makes NaN
-  Eigen::ColPivHouseholderQR<Matrix> qr(system);
+  Eigen::ColPivHouseholderQR<Matrix> qr = pivotedQrOf(system);
   qr.setThreshold(kRankTolerance);
-  solution.theta = lengths.cwiseInverse().asDiagonal() * qr.solve(right);
+  solution.theta = lengths.cwiseInverse().asDiagonal() * solvedBy(qr, right);
   return solution;
 }
 

@@ -138,4 +138,6 @@ void ClpOptimizer::report(Diagnostics::Status& status) const {
   addRefused(status, authority().refused());
 }
 
+template int runNode<ClpOptimizer>(int, char**, const std::string&);
+
 }  // namespace fpc

@@ -1,14 +1,14 @@
 #include "ros/commission_server.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <utility>
 
+#include "config/design_library.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "ros/topics.hpp"
-#include "runtime/commissioning/commissioning.hpp"
+#include "runtime/commissioning/stages_job.hpp"
 
 namespace fpc {
 namespace {
@@ -70,41 +70,41 @@ void CommissionServer::onGoal(Server::GoalHandle goal) {
 
 void CommissionServer::begin(const fmbpc::CommissionGoal& wish) {
   require(std::filesystem::path(wish.folder).is_absolute(), "folder", "an absolute path");
-  const auto until = commissioningStage(wish.until, "until");
-  const CommissioningBrief brief = readBrief(wish.brief, &loop_);
   tap_ = std::make_shared<PlantTap>(patience());
-  CommissioningOptions options;
-  options.alive = tap_;
-  options.running = &loop_;
-  options.evaluations = wish.evaluations > 0 ? static_cast<int>(wish.evaluations) : 48;
-  options.members = wish.members > 0 ? static_cast<int>(wish.members) : 16;
-  options.show = [this](CommissioningStage stage, const std::string& text) {
+  StagesWish asked;
+  asked.brief = wish.brief;
+  asked.folder = wish.folder;
+  asked.until = wish.until;
+  asked.again = wish.again;
+  asked.evaluations = static_cast<int>(wish.evaluations);
+  asked.members = static_cast<int>(wish.members);
+  asked.plant = tap_;
+  asked.loop = &loop_;
+  asked.show = [this](const std::string& stage, const std::string& text) {
     fmbpc::CommissionFeedback news;
-    news.stage = wordOf(stage);
+    news.stage = stage;
     news.text = text;
     const std::lock_guard<std::mutex> lock(mutex_);
     news_.push_back(std::move(news));
   };
-  const auto stages = std::make_shared<Commissioning>(wish.brief, wish.folder, options);
-  if (!wish.again.empty()) stages->undo(commissioningStage(wish.again, "again"));
-  if (until >= CommissioningStage::kWatch &&
-      !stages->done(std::min(until, CommissioningStage::kTest))) {
+  const std::shared_ptr<StagesJob> stages = designLibrary("commission").stages(asked);
+  if (stages->needsPlant()) {
     hooks_.tap(tap_);
-    held_ = brief.hold_asked;
-    if (!held_.empty()) hooks_.setpoint({0, held_, brief.hold_values, CommandMode::kOverride});
+    held_ = stages->held();
+    if (!held_.empty()) hooks_.setpoint({0, held_, stages->heldValues(), CommandMode::kOverride});
   }
   cancelled_ = over_ = false;
   result_ = {};
-  thread_ = std::thread([this, stages, until] {
+  thread_ = std::thread([this, stages] {
     fmbpc::CommissionResult result;
     try {
-      stages->run(until);
+      stages->run();
       result.ok = 1;
     } catch (const std::exception& error) {
       result.message = error.what();
     }
     tap_->end(result.ok ? "the stages are done" : result.message);
-    result.figures = stages->figures().dump();
+    result.figures = stages->figures();
     const std::lock_guard<std::mutex> lock(mutex_);
     result_ = std::move(result);
     over_ = true;

@@ -306,4 +306,6 @@ void ControllerNode::publishSignals() {
   }
 }
 
+template int runNode<ControllerNode>(int, char**, const std::string&);
+
 }  // namespace fpc

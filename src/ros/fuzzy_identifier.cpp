@@ -270,4 +270,6 @@ void FuzzyIdentifier::say(const Notice& notice, const StepHeader& of) {
   health_.say(events);
 }
 
+template int runNode<FuzzyIdentifier>(int, char**, const std::string&);
+
 }  // namespace fpc

@@ -90,4 +90,6 @@ void GatewayNode::addValues(Diagnostics::Status& status) const {
   status.add("actions that the plant could not take", gateway_.skipped());
 }
 
+template int runNode<GatewayNode>(int, char**, const std::string&);
+
 }  // namespace fpc

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "config/design_library.hpp"
+
 namespace fpc {
 
 IdentificationWorker::~IdentificationWorker() {
@@ -19,12 +21,13 @@ void IdentificationWorker::start(IdentificationJob job) {
 void IdentificationWorker::work(const IdentificationJob& job) {
   Outcome outcome;
   try {
-    outcome.result = identifyRecord(job.values, job.structure, job.source, job.share,
-                                    [this](const RecordProgress& progress) {
-                                      const std::lock_guard<std::mutex> lock(mutex_);
-                                      progress_ = progress;
-                                      return !cancelled_;
-                                    });
+    outcome.result = designLibrary("model.identify")
+                         .identify_record(job.values, job.structure, job.source, job.share,
+                                          [this](const RecordProgress& progress) {
+                                            const std::lock_guard<std::mutex> lock(mutex_);
+                                            progress_ = progress;
+                                            return !cancelled_;
+                                          });
   } catch (const std::exception& error) {
     outcome.error = error.what();
   }

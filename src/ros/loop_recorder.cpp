@@ -329,4 +329,6 @@ int LoopRecorder::writeRest() {
   return 1;
 }
 
+template int runNode<LoopRecorder>(int, char**, const std::string&);
+
 }  // namespace fpc

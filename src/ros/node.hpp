@@ -20,6 +20,7 @@
 #include "ros/newest.hpp"
 #include "ros/queues.hpp"
 #include "ros/quick_negotiation.hpp"
+#include "ros/run_node.hpp"
 #include "ros/steady_timer.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
@@ -214,8 +215,6 @@ class Running {
   std::unique_ptr<Class> instance_;
 };
 
-/// Everything a main() does. A node that its loop does not need ends, or with ~stay true (a launch
-/// that respawns) waits for the shutdown.
 template <typename Class>
 int runNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);

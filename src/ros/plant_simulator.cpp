@@ -120,4 +120,6 @@ void PlantSimulator::addValues(Diagnostics::Status& status) const {
   status.add("commands dropped: too many", commands_.dropped());
 }
 
+template int runNode<PlantSimulator>(int, char**, const std::string&);
+
 }  // namespace fpc

@@ -169,4 +169,6 @@ void TargetOptimizer::report(Diagnostics::Status& status) const {
   addRefused(status, authority().refused());
 }
 
+template int runNode<TargetOptimizer>(int, char**, const std::string&);
+
 }  // namespace fpc

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "config/design_library.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/factory.hpp"
 
@@ -11,6 +12,7 @@ LoopController::LoopController(const LoopFile& loop, LoopControllerHooks hooks)
     : loop_(loop), hooks_(std::move(hooks)), session_(makeControllerSession(loop)) {
   if (loop.targets.enabled) layer_ = std::make_unique<TargetSession>(makeTargetSession(loop));
   if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
+  if (loop.has_identify) designLibrary(loop.name + ": model.identify");  // now, not late in a run
   if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
   if (identifier_) begin(identifier_->start());
   require(!layer_ || layer_->ready(), loop.name + ": model.file", "a model for section targets");
@@ -51,7 +53,8 @@ void LoopController::identify(int window) {
 void LoopController::run(const IdentificationJob& job) {
   try {
     const RecordIdentification result =
-        identifyRecord(job.values, job.structure, job.source, job.share);
+        designLibrary("model.identify")
+            .identify_record(job.values, job.structure, job.source, job.share, {});
     const TsModel& model = identifier_->accept(result.found.model);
     if (hooks_.identified) hooks_.identified(model);
     use(&model);

@@ -1,10 +1,10 @@
 #include "supervision/model_trial.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "base/decompositions.hpp"
 #include "base/statistics.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
@@ -149,7 +149,7 @@ bool ModelTrial::fillSums(Index output, Sums& sums) const {
     if (size > 1e-9 * (1.0 + std::abs(centre[c])) * std::sqrt(static_cast<double>(n))) continue;
     X.col(c).setZero();
   }
-  const Vector found = Eigen::ColPivHouseholderQR<Matrix>(X).solve(e);
+  const Vector found = solvedByPivotedQr(X, e);
   const Vector any = e - X * found;
   // The same autoregression for all.
   const auto whitened = [&](const auto& at) {

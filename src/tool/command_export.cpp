@@ -8,7 +8,8 @@
 #include "export/export.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/plot.hpp"
-#include "tool/topic_options.hpp"
+#include "tool/design_words.hpp"
+#include "tool/study_options.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -45,9 +46,7 @@ int exportLaw(const ExportArguments& a) {
 
 void addExport(CLI::App& app, std::function<int()>& chosen) {
   const auto a = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand(
-      "export",
-      "Writes a loop's law as a block in C99 and Structured Text, with vectors and tests");
+  CLI::App* command = app.add_subcommand("export", designText("export"));
   command->add_option("LOOP", a->loop, "name of config/loop, or path");
   command->add_option("--to", a->to, "c99, st, all")
       ->capture_default_str()

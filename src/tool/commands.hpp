@@ -221,6 +221,5 @@ int health(const HealthArguments& arguments);
 /// These become other programs: they return only by throwing.
 int watch(const std::vector<std::string>& words);
 int page(std::vector<std::string> words);
-int reproduce(const std::vector<std::string>& words);
 
 }  // namespace fpc::tool

@@ -1,21 +1,20 @@
-// The command-line tool `fmbpc`.
+// The command-line tool `fmbpc`: what runs loops and reads their records. Its other commands are
+// programs beside it.
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <stdexcept>
 #include <string>
 
 #include "tool/commands.hpp"
-#include "tool/printed.hpp"
+#include "tool/program.hpp"
 #include "tool/ranks.hpp"
-#include "tool/study_options.hpp"
 #include "tool/topic_options.hpp"
 
 namespace {
 
-std::function<int()> chosen;
+std::function<int()> asked_for;
 
 void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   CLI::App* run =
@@ -41,7 +40,7 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   run->footer("Example: fmbpc run asp_best asp_case1_pi_x_best --out results\n");
   run->callback([&a] {
     if (a.loops.empty() && a.plant.empty()) throw CLI::RequiredError("LOOP");
-    chosen = [&a] { return fpc::tool::run(a); };
+    asked_for = [&a] { return fpc::tool::run(a); };
   });
 }
 
@@ -57,193 +56,11 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
   resolve->footer("Example: fmbpc resolve asp_case1 --set controller.coincidence_steps=3\n");
   resolve->callback([&a] {
     if (a.loops.empty() && a.plant.empty()) throw CLI::RequiredError("LOOP");
-    chosen = [&a] {
+    asked_for = [&a] {
       if (!a.plant.empty()) return fpc::tool::resolvePlant(a.plant, a.set, a.sets);
       return fpc::tool::resolve(a.loops.front(), a.set, a.sets, a.on_model);
     };
   });
-}
-
-void addCommission(CLI::App& app, fpc::tool::CommissionArguments& a) {
-  CLI::App* commission = app.add_subcommand(
-      "commission",
-      "From a brief of a plant to a law that holds it: watches, tests, models, designs; what is "
-      "done is kept in a folder");
-  commission->add_option("BRIEF", a.brief, "what the operator says, docs/commissioning.md")
-      ->required();
-  commission->add_option("--folder", a.folder, "of its files (default: ./NAME_commissioned)");
-  commission->add_option("--until", a.until, "last stage")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"brief", "watch", "test", "model", "design"}));
-  commission->add_option("--again", a.again, "goes through this stage and those after it once more")
-      ->check(CLI::IsMember({"brief", "watch", "test", "model", "design"}));
-  commission->add_flag("--topics", a.topics,
-                       "of the loop that runs over topics: its plant, not a simulated one");
-  commission->add_flag("--undo", a.undo,
-                       "only takes back what --again names, and what is after it");
-  commission->add_option("--evaluations", a.evaluations, "of each search of stage design")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  commission->add_option("--members", a.members, "of the ensemble of models")
-      ->capture_default_str()
-      ->check(CLI::Range(8, 200));
-  commission->add_option("--threads", a.threads, "0: all cores")->capture_default_str();
-  commission->add_flag("--json", a.json, "print one JSON object and nothing else");
-  commission->footer("Example: fmbpc commission heated_tank_brief.yaml --until watch\n");
-  commission->callback([&a] { chosen = [&a] { return fpc::tool::commission(a); }; });
-}
-
-void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
-  command.add_option("--separator", f.separator, "comma, semicolon, tab or bar")
-      ->capture_default_str();
-  command.add_option("--decimal", f.decimal, "point or comma")->capture_default_str();
-  command.add_option("--missing", f.missing, "cells that mean missing beside empty ones and nan")
-      ->delimiter(',');
-  command.add_flag("--no-header", f.no_header, "the first line holds values; columns are 1, 2, ..");
-}
-
-void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
-  CLI::App* evaluate = app.add_subcommand(
-      "evaluate", "Effluent quality, operational cost and violations of runs of BSM1");
-  evaluate->add_option("RUN", a.runs, "folders of `run --out`, or loops that are run first")
-      ->required();
-  evaluate->add_option("--set", a.set, "KEY.PATH=VALUE over the loop files, may be repeated")
-      ->allow_extra_args(false);
-  evaluate->add_option("--from-h", a.from_h, "start of the judged part [h], default the last 168");
-  evaluate->add_option("--to-h", a.to_h, "its end [h], default the end of the run");
-  evaluate->add_flag("--weights-2002", a.weights_2002, "formulas of the benchmark's 2002 book");
-  evaluate->add_flag("--json", a.json, "print one JSON object and nothing else");
-  evaluate->footer("Example: fmbpc evaluate bsm1_default bsm1_supervisor\n");
-  evaluate->callback([&a] { chosen = [&a] { return fpc::tool::evaluate(a); }; });
-}
-
-void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
-  CLI::App* identify = app.add_subcommand(
-      "identify", "Identifies a fuzzy model from a record and validates it beside a linear one");
-  identify
-      ->add_option(
-          "DATA", a.data,
-          "CSV, or bag recorded by loop.launch; then STRUCTURE, a name of config/structure "
-          "or a path. With --auto: one or more records, no structure")
-      ->required();
-  identify->add_option("--out", a.out, "model file to write");
-  identify->add_option("--rows", a.rows,
-                       "FIRST:LAST data rows to identify from, from 1 (default: all)");
-  identify->add_option("--validate", a.validate, "another record to validate on");
-  identify->add_option("--validate-rows", a.validate_rows,
-                       "FIRST:LAST rows to validate on (default: none held out)");
-  identify->add_option("--plots", a.plots, "folder for pictures of sets, predictions, residuals");
-  identify->add_flag("--json", a.json, "print one JSON object and nothing else");
-  identify->add_flag("--auto", a.automatic, "search the structure; needs --inputs and --outputs");
-  identify->add_option("--inputs", a.inputs, "columns that a controller will move")->delimiter(',');
-  identify->add_option("--outputs", a.outputs, "columns to predict")->delimiter(',');
-  identify->add_option("--disturbances", a.disturbances, "columns that are only measured")
-      ->delimiter(',');
-  identify->add_option("--time", a.time, "column of times; found by its name if left out");
-  identify->add_option("--sample-time", a.sample_time_s, "[s], instead of a time column");
-  identify->add_option("--kind", a.kind, "best, linear, regressors or state")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"best", "linear", "regressors", "state"}));
-  identify
-      ->add_option("--work", a.work,
-                   "of the search, counted alike on every machine; 1 is about a second of one core")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  identify
-      ->add_option("--budget", a.budget_s,
-                   "[s] that end the search earlier; the model then depends on the machine")
-      ->check(CLI::PositiveNumber);
-  identify->add_option("--blocks", a.blocks, "held out in turn")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 20));
-  identify->add_option("--window", a.window, "measured samples that start a free run")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  identify
-      ->add_option("--reach", a.reach,
-                   "[samples] after which runs start anew from measured ones, 0 for free runs "
-                   "(default: free, 10 to 30 where the process integrates or is unstable)")
-      ->check(CLI::Range(0, 100000));
-  identify
-      ->add_option("--longest-delay", a.longest_delay,
-                   "[samples] (default: a tenth of the rows, at most 100)")
-      ->check(CLI::PositiveNumber);
-  identify
-      ->add_option("--input-row", a.input_row,
-                   "what the inputs of a row do: next (act from then on), same (were in force when "
-                   "its outputs were measured) or auto")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "next", "same"}));
-  identify->add_flag("--keep-inputs", a.keep_inputs, "inputs that hardly moved too");
-  identify->add_option("--known", a.known,
-                       "what is known of the outputs: a file, or text like "
-                       "'y: {gain: {u: positive}, max_pole: 0.99}'");
-  addFormat(*identify, a.format);
-  identify->add_option("--seed", a.seed, "of the starts of all fits")->capture_default_str();
-  identify->footer(
-      "Example: fmbpc identify examples/reactor_record.csv --auto --inputs q_c --outputs CA\n"
-      "         fmbpc identify results/trajectory.csv asp_d --out my_model.yaml\n");
-  identify->callback([&a] { chosen = [&a] { return fpc::tool::identify(a); }; });
-}
-
-void addValidate(CLI::App& app, fpc::tool::ValidateArguments& a) {
-  CLI::App* validate = app.add_subcommand(
-      "validate", "Judges a model file on a record: one step, n steps, free run");
-  validate->add_option("MODEL", a.model, "name of config/model, or path")->required();
-  validate->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
-  validate->add_option("--rows", a.rows, "FIRST:LAST data rows, from 1 (default: all)");
-  validate->add_option("--columns", a.columns, "SIGNAL=COLUMN where names differ")->delimiter(',');
-  validate->add_flag("--no-time", a.no_time, "rows are samples, whatever the times say");
-  validate->add_option("--steps", a.steps, "samples ahead of the n-step prediction")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  addFormat(*validate, a.format);
-  validate->add_option("--plots", a.plots, "folder for pictures");
-  validate->add_flag("--json", a.json, "print one JSON object and nothing else");
-  validate->footer("Example: fmbpc validate tanks.yaml other_day.csv --rows 1:500\n");
-  validate->callback([&a] { chosen = [&a] { return fpc::tool::validate(a); }; });
-}
-
-void addHealth(CLI::App& app, fpc::tool::HealthArguments& a) {
-  CLI::App* health = app.add_subcommand(
-      "health",
-      "Judges loops from their records: least variance, oscillation and its cause, valve, sensor, "
-      "model");
-  health
-      ->add_option("RECORD", a.records,
-                   "folders of `run --out` or of a recorder, folders of these, CSVs or bags")
-      ->required();
-  health->add_option("--outputs", a.outputs, "of a CSV: columns of measured values, one a loop")
-      ->delimiter(',');
-  health->add_option("--setpoints", a.setpoints, "their setpoints (default: the mean is held)")
-      ->delimiter(',');
-  health->add_option("--inputs", a.inputs, "what their controllers asked for")->delimiter(',');
-  health->add_option("--positions", a.positions, "where their valves stood")->delimiter(',');
-  health->add_option("--mode", a.mode, "column that says who moves the inputs");
-  health->add_option("--automatic", a.automatic, "its values in automatic")
-      ->capture_default_str()
-      ->delimiter(',');
-  health->add_option("--manual", a.manual, "... by hand")->delimiter(',');
-  health->add_option("--fallback", a.fallback, "... on the fallback; other values: held")
-      ->delimiter(',');
-  health->add_option("--time", a.time, "column of times; found by its name if left out");
-  health->add_option("--sample-time", a.sample_time_s, "[s], instead of a time column");
-  health
-      ->add_option("--dead-time", a.dead_times_s,
-                   "[s], of each loop or one for all (default: from the record)")
-      ->delimiter(',')
-      ->check(CLI::NonNegativeNumber);
-  health->add_option("--limits", a.limits, "LOWER:UPPER of the inputs (of runs: their own)");
-  health->add_option("--model", a.model, "name of config/model, or path: is it out of date?");
-  health->add_option("--rows", a.rows, "FIRST:LAST rows to judge, from 1 (default: all)");
-  addFormat(*health, a.format);
-  health->add_option("--out", a.out, "folder for a page for each loop and index.html");
-  health->add_flag("--json", a.json, "print one JSON object and nothing else");
-  health->footer(
-      "Example: fmbpc health results/asp_best --out results/health\n"
-      "         fmbpc health historian.csv --outputs PV --setpoints SP --inputs OP --dead-time "
-      "30\n");
-  health->callback([&a] { chosen = [&a] { return fpc::tool::health(a); }; });
 }
 
 void addLoops(CLI::App& app, fpc::tool::LoopsArguments& a) {
@@ -254,7 +71,7 @@ void addLoops(CLI::App& app, fpc::tool::LoopsArguments& a) {
   loops->add_flag("--json", a.json, "print one JSON object and nothing else");
   loops->footer("Example: fmbpc loops column clp\n");
   loops->callback(
-      [&a] { chosen = [&a] { return fpc::tool::loops(a.words, a.names_only, a.json); }; });
+      [&a] { asked_for = [&a] { return fpc::tool::loops(a.words, a.names_only, a.json); }; });
 }
 
 void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
@@ -262,158 +79,50 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
       app.add_subcommand("plants", "Lists the plants with their signals, units and ranges");
   plants->add_flag("--json", a.json, "print one JSON object and nothing else");
   plants->footer("Example: fmbpc plants\n");
-  plants->callback([&a] { chosen = [&a] { return fpc::tool::plants(a.json); }; });
+  plants->callback([&a] { asked_for = [&a] { return fpc::tool::plants(a.json); }; });
   CLI::App* controllers = app.add_subcommand(
       "controllers", "Lists the types of controller: what they are, need and let change in a run");
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
   controllers->footer("Example: fmbpc controllers\n");
-  controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
+  controllers->callback([&a] { asked_for = [&a] { return fpc::tool::controllers(a.json); }; });
   CLI::App* events = app.add_subcommand(
       "events", "Lists what a loop may say of itself: causes, consequences, remedies");
   events->add_option("CODES", a.loops, "only these (default: docs/events.md)");
   events->footer("Example: fmbpc events signal_frozen\n");
-  events->callback([&a] { chosen = [&a] { return fpc::tool::events(a.loops); }; });
-  CLI::App* model = app.add_subcommand(
-      "model",
-      "Reports gains, time constants, poles and dead times of a model, and what not to trust");
-  model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
-  model->add_flag("--json", a.json, "print one JSON object and nothing else");
-  model->add_option("--plots", a.out, "folder for pictures of its sets and step responses");
-  model->footer("Example: fmbpc model fm_1 --plots results/fm_1\n");
-  model->callback(
-      [&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json, a.out); }; });
+  events->callback([&a] { asked_for = [&a] { return fpc::tool::events(a.loops); }; });
   CLI::App* table =
       app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
   table->footer("Example: fmbpc table results/asp_case1 results/asp_case1_pi_s\n");
   table->add_flag("--short", a.brief, "a line per run: errors of what all control, movement");
-  table->callback([&a] { chosen = [&a] { return fpc::tool::table(a.loops, a.brief); }; });
-}
-
-void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
-  CLI::App* stability =
-      app.add_subcommand("stability",
-                         "Of a loop: margins in gain and delay where its run leads it. Of a fuzzy "
-                         "law: eigenvalues over "
-                         "the horizon, a Lyapunov certificate. Steady states of the plant");
-  stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
-  stability->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
-      ->allow_extra_args(false);
-  stability->add_option("--at", a.at,
-                        "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
-  stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST")
-      ->capture_default_str();
-  stability->add_option("--noise-gain", a.noise_gain,
-                        "advise a horizon: largest std of the input per std of measurement noise");
-  stability->add_option("--settling", a.settling, "advise a horizon: largest settling [samples]");
-  stability
-      ->add_option("--points", a.points,
-                   "of a loop: so many places of its run, each the farthest from the others, at "
-                   "which it is linearised; 0: none")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 100));
-  stability->add_flag(
-      "--on-model", a.on_model,
-      "of a loop: its model in the place of its plant (of an external plant anyway)");
-  stability->add_option("--out", a.out, "folder for stability.json and plots");
-  stability->add_flag("--json", a.json, "print one JSON object and nothing else");
-  stability->add_flag("--no-plot", a.no_plot, "no plots");
-  stability->footer(
-      "Example: fmbpc stability cstr_tracking_pi --out results/stability\n"
-      "         fmbpc stability fm_1 --at q_r=570,q_i=1300,s_i=366.67\n");
-  stability->callback([&a] { chosen = [&a] { return fpc::tool::stability(a); }; });
-}
-
-void addNew(CLI::App& app, fpc::tool::NewArguments& a) {
-  CLI::App* create = app.add_subcommand(
-      "new", "Writes a loop file for a model, or a package with a plant or controller of your own");
-  create->require_subcommand(1);
-  CLI::App* loop = create->add_subcommand(
-      "loop",
-      "A loop file that runs, with numbers from a model and its record, and a PI beside it");
-  loop->add_option("NAME", a.name, "of the loop (default: the model's, with _loop)");
-  loop->add_option("--model", a.model, "name of config/model, or path")->required();
-  loop->add_option("--plant", a.plant, "what is controlled")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"model", "external", "float64", "modbus"}));
-  loop->add_option("--out", a.out, "folder")->capture_default_str();
-  loop->footer("Example: fmbpc new loop tank --model tank_model.yaml --plant modbus\n");
-  loop->callback([&a] { chosen = [&a] { return fpc::tool::newLoop(a); }; });
-  for (const char* kind : {"plant", "controller"}) {
-    CLI::App* package = create->add_subcommand(
-        kind, std::string("A package with a ") + kind + " of your own: it builds, its tests pass");
-    package->add_option("NAME", a.name, "of package, library and type")->required();
-    package->add_option("--out", a.out, "folder in which the package's is made")
-        ->capture_default_str();
-    package->footer(std::string("Example: fmbpc new ") + kind + " my_" + kind + "\n");
-    package->callback(
-        [&a, kind] { chosen = [&a, kind] { return fpc::tool::newPackage(a, kind); }; });
-  }
-}
-
-void addCheck(CLI::App& app, fpc::tool::NewArguments& a) {
-  CLI::App* check = app.add_subcommand(
-      "check", "Asks the plants and controllers of a package for what every one promises");
-  check->add_option("PACKAGE", a.name, "a plugin's name, or the path of its library")->required();
-  check->footer("Example: fmbpc check two_tanks\n");
-  check->callback([&a] { chosen = [&a] { return fpc::tool::check(a.name); }; });
+  table->callback([&a] { asked_for = [&a] { return fpc::tool::table(a.loops, a.brief); }; });
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (!fpc::tool::becomeMpi(argv)) return 1;
+  try {
+    if (const int code = fpc::tool::runOther(argc, argv); code >= 0) return code;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "fmbpc: %s\n", e.what());
+    return 1;
+  }
   CLI::App app{"Process control with fuzzy model-based predictive control", "fmbpc"};
-  app.require_subcommand(1);
   app.set_version_flag("--version", "fmbpc " FMBPC_VERSION);
-  app.footer("fmbpc COMMAND --help: options and an example of each\n");
   fpc::tool::RunArguments arguments;
   addRun(app, arguments);
   addResolve(app, arguments);
-  fpc::tool::EvaluateArguments evaluate_arguments;
-  addEvaluate(app, evaluate_arguments);
-  fpc::tool::IdentifyArguments identify_arguments;
-  addIdentify(app, identify_arguments);
-  fpc::tool::CommissionArguments commission_arguments;
-  addCommission(app, commission_arguments);
-  fpc::tool::ValidateArguments validate_arguments;
-  addValidate(app, validate_arguments);
-  fpc::tool::HealthArguments health_arguments;
-  addHealth(app, health_arguments);
   fpc::tool::LoopsArguments loops_arguments;
   addLoops(app, loops_arguments);
   addLists(app, arguments);
-  fpc::tool::StabilityArguments stability;
-  addStability(app, stability);
+  fpc::tool::addDesign(app);
   fpc::tool::addReproduce(app);
-  fpc::tool::NewArguments creation;
-  addNew(app, creation);
-  addCheck(app, creation);
-  fpc::tool::TuneArguments tune;
-  fpc::tool::addTune(app, tune, chosen);
-  fpc::tool::StudyArguments study;
-  fpc::tool::addStudy(app, study, chosen);
-  fpc::tool::ReplayArguments replay;
-  fpc::tool::addReplay(app, replay, chosen);
   fpc::tool::RecoverArguments recover;
-  fpc::tool::addRecover(app, recover, chosen);
-  fpc::tool::addOperate(app, chosen);
-  fpc::tool::addShadow(app, chosen);
-  fpc::tool::addExport(app, chosen);
+  fpc::tool::addRecover(app, recover, asked_for);
+  fpc::tool::addOperate(app, asked_for);
+  fpc::tool::addShadow(app, asked_for);
   fpc::tool::addWatch(app);
   fpc::tool::addPage(app);
-  fpc::tool::refuseEmptyNames(app);
-  try {
-    if (const int code = fpc::tool::runOther(argc, argv); code >= 0) return code;
-    const std::string unknown = fpc::tool::unknownCommand(app, argc, argv);
-    if (!unknown.empty()) throw std::invalid_argument(unknown);  // before its --help is answered
-    app.parse(argc, argv);
-    return fpc::tool::printed(chosen());
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return fpc::tool::printed(app.exit(e));
-    std::fprintf(stderr, "fmbpc: %s\n", fpc::tool::wrongWith(app, e, argc, argv).c_str());
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "fmbpc: %s\n", e.what());
-  }
-  return 1;
+  return fpc::tool::runProgram(app, asked_for, argc, argv);
 }

@@ -10,6 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "tool/mpi_pool.hpp"
 #include "tool/printed.hpp"
+#include "tool/program.hpp"
 #include "tool/study_options.hpp"
 
 namespace {

@@ -1,14 +1,11 @@
 #include "tool/study_options.hpp"
 
-#include <algorithm>
-
-#include "fmbpc/base/text.hpp"
+#include "tool/design_words.hpp"
 
 namespace fpc::tool {
 
 void addTune(CLI::App& app, TuneArguments& a, std::function<int()>& chosen) {
-  CLI::App* tune = app.add_subcommand(
-      "tune", "Searches the numbers of a loop file that a tuning file names, on all cores");
+  CLI::App* tune = app.add_subcommand("tune", designText("tune"));
   tune->add_option("LOOP", a.loop, "name of config/loop, or path")->required();
   tune->add_option("TUNING", a.tuning, "name of config/tuning, or path")->required();
   tune->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
@@ -36,8 +33,7 @@ void addTune(CLI::App& app, TuneArguments& a, std::function<int()>& chosen) {
 }
 
 void addStudy(CLI::App& app, StudyArguments& a, std::function<int()>& chosen) {
-  CLI::App* study = app.add_subcommand(
-      "study", "Compares loops in pairs over seeds, parameters, noise and records, on all cores");
+  CLI::App* study = app.add_subcommand("study", designText("study"));
   study->add_option("STUDY|LOOP", a.names, "a study of config/study, or loops")->required();
   study->add_option("--seeds", a.seeds,
                     "FIRST:LAST or a list: of patterns, noise and --vary (default: the study's, "
@@ -60,24 +56,6 @@ void addStudy(CLI::App& app, StudyArguments& a, std::function<int()>& chosen) {
   study->add_flag("--no-plot", a.no_plot, "no plot");
   study->footer("Example: fmbpc study asp_case1 asp_case1_pi_x --seeds 1:8\n");
   study->callback([&] { chosen = [&a] { return fpc::tool::study(a); }; });
-}
-
-std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands(nullptr))
-    commands.push_back(command->get_name());
-  const bool known = std::find(commands.begin(), commands.end(), first) != commands.end();
-  if (first.empty()) return "expected a command: " + join(commands);
-  if (known || first[0] == '-') return "";
-  const auto near = nearest(first, commands, 1);
-  return "unknown command '" + first + "'" +
-         (near.empty() ? ": expected one of " + join(commands) : ", did you mean " + near[0] + "?");
-}
-
-std::string wrongWith(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  const std::string unknown = unknownCommand(app, argc, argv);
-  return unknown.empty() ? error.what() : unknown;
 }
 
 }  // namespace fpc::tool

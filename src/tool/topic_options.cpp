@@ -1,25 +1,30 @@
 #include "tool/topic_options.hpp"
 
+#include <filesystem>
+
+#include "fmbpc/base/input_error.hpp"
+#include "tool/become.hpp"
+#include "tool/design_words.hpp"
+
 namespace fpc::tool {
 namespace {
 
 constexpr char kWatch[] = "watch", kPage[] = "page", kReproduce[] = "reproduce";
 
-}  // namespace
-
-void addReplay(CLI::App& app, ReplayArguments& a, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "replay", "Plays a recorded run through controller and optimizer and compares their actions");
-  command->add_option("BAG", a.bag, "bag of loop.launch record:=true")->required();
-  command->add_option("LOOP", a.loop, "name or path, instead of the loop in the bag");
-  command->add_option("--set", a.set, "KEY.PATH=VALUE over LOOP, may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--run", a.run, "which, from 1, of a bag with several (after a reset)")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--json", a.json, "print one JSON object and nothing else");
-  command->footer("Example: fmbpc replay ~/.ros/fmbpc/asp_case1_clp/loop.bag\n");
-  command->callback([&a, &chosen] { chosen = [&a] { return fpc::tool::replay(a); }; });
+/// A program that is built apart, with these words behind its name.
+[[noreturn]] void becomeNeighbour(const std::string& name, const std::string& command,
+                                  const std::vector<std::string>& words) {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
+  require(std::filesystem::exists(program), command,
+          "the program " + name + " beside this one: `scripts/build" +
+              (name == "fmbpc_papers" ? " " + name : "") + "` makes it");
+  std::vector<std::string> line{program.string()};
+  line.insert(line.end(), words.begin(), words.end());
+  become(line);
 }
+
+}  // namespace
 
 void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand(
@@ -45,21 +50,19 @@ void addReproduce(CLI::App& app) {
   app.add_subcommand(kReproduce, "Tables and figures of the papers: paper | here | verdict");
 }
 
+void addDesign(CLI::App& app) {
+  for (const DesignWord& w : kDesignWords) app.add_subcommand(w.word, w.text);
+}
+
 int runOther(int argc, char** argv) {
   if (argc < 2) return -1;
   const std::string command = argv[1];
   const std::vector<std::string> words(argv + 2, argv + argc);
   if (command == kWatch) return watch(words);
   if (command == kPage) return page(words);
-  return command == kReproduce ? reproduce(words) : -1;
-}
-
-void refuseEmptyNames(CLI::App& app) {
-  const CLI::Validator named(
-      [](const std::string& text) { return text.empty() ? "expected a name, got none" : ""; }, "");
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
-    for (const char* name : {"--out", "--plots", "--commands", "--validate"})
-      if (CLI::Option* option = command->get_option_no_throw(name)) option->check(named);
+  if (command == kReproduce) becomeNeighbour("fmbpc_papers", command, words);
+  if (designText(command)) becomeNeighbour("fmbpc_design", command, {argv + 1, argv + argc});
+  return -1;
 }
 
 }  // namespace fpc::tool

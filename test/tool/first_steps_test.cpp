@@ -2,9 +2,11 @@
 // ships.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
+#include "config/plugins.hpp"
 #include "paths.hpp"
 #include "runtime/loop_fixture.hpp"
 #include "tool/tool_run.hpp"
@@ -38,6 +40,25 @@ TEST_F(FirstSteps, TheDemonstrationShowsALawThatWins) {
   EXPECT_NE(printed.find("Verdict: FMBPC that estimates both (reactor_load) wins: ISE of CA "),
             std::string::npos)
       << printed;
+}
+
+/// As after scripts/demo: the tool and the core, each alone in a folder.
+TEST_F(FirstSteps, WhatIsNotBuiltYetIsSaidInOneLine) {
+  namespace fs = std::filesystem;
+  fs::copy(FMBPC_TOOL, folder_);
+  fs::copy(fs::canonical(libraryFolder() + "/libfmbpc_core.so"), folder_ / "core.so");
+  fs::rename(folder_ / "core.so", folder_ / FMBPC_CORE_SONAME);
+  const std::string alone =
+      "LD_LIBRARY_PATH=" + folder_.string() + ":$LD_LIBRARY_PATH " + path("fmbpc_tool") + " ";
+  for (const char* command : {"identify --help", "tune", "run asp_identify --no-plot"}) {
+    const Outcome outcome = shell(alone + command + " 2>&1 >/dev/null");
+    EXPECT_EQ(outcome.code, 1) << command;
+    EXPECT_NE(outcome.printed.find("`scripts/build` makes it"), std::string::npos)
+        << command << ": " << outcome.printed;
+    EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1)
+        << command << ": " << outcome.printed;
+  }
+  EXPECT_EQ(shell(alone + "resolve asp_case1_clp 2>&1 >/dev/null").printed, "");
 }
 
 TEST_F(FirstSteps, ARecordThatDoesNotShipIsNamedWithItsSource) {

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kHardlyBegun = 0.1;  // of the effect one sample later
+constexpr double kBarelyBegun = 0.1;  // of the effect one sample later
 
 }  // namespace
 
@@ -104,7 +104,7 @@ bool PlanCost::isShortSighted(VectorRef step) {
     held_[a] += step[a];
     if (!lastOutputs(stepped_)) continue;
     stepped_ -= last_;
-    if (stepped_.col(0).norm() <= kHardlyBegun * stepped_.col(1).norm()) return true;
+    if (stepped_.col(0).norm() <= kBarelyBegun * stepped_.col(1).norm()) return true;
   }
   return false;
 }

@@ -1,11 +1,11 @@
 #include "runtime/commissioning/process_models.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "base/decompositions.hpp"
 #include "base/files.hpp"
 #include "base/finite_json.hpp"
 #include "base/statistics.hpp"
@@ -213,7 +213,7 @@ std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vec
     return Matrix(output_range.cwiseInverse().asDiagonal() * gains * input_range.asDiagonal());
   };
   const Matrix gains = scaled(gainsOf(models.fits, n_u));
-  const Eigen::JacobiSVD<Matrix> svd(gains, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Matrix> svd = svdOf(gains, Eigen::ComputeFullU | Eigen::ComputeFullV);
   std::vector<WeakDirection> weak;
   const Vector values = svd.singularValues();
   for (Index k = 1; k < std::min(n_u, n_y); ++k) {
