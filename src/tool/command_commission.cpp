@@ -9,6 +9,7 @@
 #include "fmbpc/base/text.hpp"
 #include "runtime/commissioning/commissioning.hpp"
 #include "runtime/operator_line.hpp"
+#include "runtime/plot.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

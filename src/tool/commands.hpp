@@ -177,7 +177,7 @@ struct CommissionArguments {
   bool topics{false};           ///< of the loop that runs over topics
   bool undo{false};             ///< takes `again` and all after it back, and does nothing else
   int evaluations{48}, members{16}, threads{0};
-  bool json{false};
+  bool json{false}, no_plot{false};
 };
 
 int commission(const CommissionArguments& arguments);

@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 import matplotlib
+import numpy
 
 matplotlib.use("Agg")
 
@@ -46,6 +47,22 @@ class Plots(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([os.environ["FMBPC_TOOL"], "run", "asp_case1", "--set", "sampling.duration_h=4", "--out", folder], check=True, capture_output=True)
             self.assertTrue(pathlib.Path(folder, "plot.png").exists())
+
+    def test_a_commissioning_is_drawn_as_far_as_it_is(self):
+        with tempfile.TemporaryDirectory() as folder:
+            brief = pathlib.Path(__file__).resolve().parents[2].joinpath("examples", "commission", "reactor.yaml")
+            subprocess.run([os.environ["FMBPC_TOOL"], "commission", brief, "--until", "watch", "--folder", folder], check=True, capture_output=True)
+            self.assertTrue(pathlib.Path(folder, "test.png").exists())
+            self.assertFalse(pathlib.Path(folder, "model.png").exists())
+
+    def test_responses_of_elements_begin_and_end_as_on_paper(self):
+        from fmbpc.plots import commissioning
+        for tau, second, damping, lead in ((8, 8, 0.4, -3), (8, 3, 1, 5), (8, 8, 1, 2), (8, 0, 1, 0)):
+            element = {"gain": 2, "time_constant_s": tau, "second_s": second, "damping": damping, "lead_s": lead, "dead_time_s": 4, "integrating": False}
+            early, last = commissioning.step(element, numpy.array([4.0, 4.0 + 1e-5, 400.0]))[[1, 2]]
+            self.assertAlmostEqual(0, commissioning.step(element, numpy.array([3.9]))[0], 12)
+            self.assertAlmostEqual(2 * (lead / (tau * second) if second else 1 / tau), early / 1e-5, 4)
+            self.assertAlmostEqual(2, last, 6)
 
 
 if __name__ == "__main__":

@@ -144,7 +144,7 @@ std::string rewritten(const CommissioningBrief& brief, const std::string& what,
   for (const auto& [key, text] : sections) root[key] = detached(loadYaml(text, "design: " + key));
   root["actuator"]["move_upper"] =
       detached(loadYaml(mapOf(brief.loop.plant_info.inputs, brief.move), "design: moves"));
-  root["title"] = brief.loop.title + ", commissioned " + what;
+  root["title"] = brief.loop.report.title + ", commissioned " + what;
   YAML::Emitter out;
   out << root;
   return std::string(out.c_str()) + "\n";
