@@ -27,7 +27,8 @@ constexpr double kLowestDamping = 0.1, kHighestDamping = 1e3;
 constexpr double kMostLead = 1e3;  // of the lags: a gain that is hardly one beside its lead
 
 /// Shape of an element: which of its numbers are free.
-enum Shape { kNone = 0, kFirst = 1, kSecond = 2, kLead = 3 };
+/// kTied: its lag is given, see shortenLags().
+enum Shape { kNone = 0, kFirst = 1, kSecond = 2, kLead = 3, kTied = 4 };
 
 struct Candidate {
   ProcessKind kind{ProcessKind::kStable};
@@ -73,7 +74,8 @@ class Fitter {
     }
     require(best.has_value(), "record",
             "data to which a process of one of the kinds can be fitted");
-    return finish(std::move(*best));
+    ProcessFit fit = finish(*best);
+    return shortenLags(*best, fit) ? finish(*best) : fit;
   }
 
  private:
@@ -305,6 +307,7 @@ class Fitter {
   /// Stable: gain, tau_1 (tau_2 (beta)) theta. With a shared pole: gain, tau_2 (beta) theta.
   static Index countOf(ProcessKind kind, Shape s) {
     if (s == kNone) return 0;
+    if (s == kTied) return 2;
     if (kind == ProcessKind::kStable) return s == kFirst ? 3 : s == kSecond ? 4 : 5;
     return s == kLead ? 4 : 3;
   }
@@ -323,7 +326,7 @@ class Fitter {
         p.push_back(std::log(std::max(e.second, lowLag())));
       } else if (c.shapes[j] == kFirst) {
         p.push_back(std::log(e.time_constant));
-      } else {  // smooth where two lags meet, as they themselves are not
+      } else if (c.shapes[j] != kTied) {  // smooth where two lags meet, as they themselves are not
         const double second = std::max(e.second, lowLag());
         const double both = std::sqrt(e.time_constant * second);
         p.push_back(std::log(both));
@@ -350,6 +353,8 @@ class Fitter {
         e.second = lag(p[i++]);
       } else if (c.shapes[j] == kFirst) {
         e.time_constant = lag(p[i++]);
+      } else if (c.shapes[j] == kTied) {
+        e.time_constant = c.elements[j].time_constant;
       } else {
         const double both = lag(p[i++]);
         const double damping = std::clamp(std::exp(p[i++]), kLowestDamping, kHighestDamping);
@@ -612,6 +617,37 @@ class Fitter {
     return without;
   }
 
+  /// A record under feedback may show how an element begins and not where it ends: its gain is
+  /// nothing beside its bound, its lag anything. The shortest lag that does as well is taken, of
+  /// the slowest that is known and its doubles. True where one was.
+  bool shortenLags(Candidate& c, const ProcessFit& fit) {
+    if (c.kind != ProcessKind::kStable) return false;
+    const auto isKnown = [](const ElementEstimate& e) {
+      return e.seen && e.gain_bound < std::abs(e.element.gain);
+    };
+    double slowest = 0.0;
+    for (const ElementEstimate& e : fit.elements)
+      if (isKnown(e)) slowest = std::max(slowest, e.element.lags());
+    bool changed = false;
+    for (std::size_t j = 0; j < c.elements.size() && slowest > 0.0; ++j) {
+      const ElementEstimate& e = fit.elements[j];
+      if (!e.seen || isKnown(e)) continue;
+      for (double lag = slowest; lag < e.element.lags(); lag *= 2.0) {
+        Candidate next = c;
+        next.shapes[j] = kTied;
+        next.elements[j] = shaped(c, {});
+        next.elements[j].gain = e.element.gain * lag / e.element.lags();
+        next.elements[j].time_constant = lag;
+        next.elements[j].dead_time = e.element.dead_time;
+        if (!descend(next) || criterion(next) > criterion(c) + kWorthwhile) continue;
+        c = next;
+        changed = true;
+        break;
+      }
+    }
+    return changed;
+  }
+
   // ---- bounds
 
   ProcessFit finish(Candidate c) {
@@ -696,8 +732,9 @@ class Fitter {
       // The mean residence time, by its slopes with respect to the element's numbers.
       Vector slope = Vector::Zero(covariance.rows());
       const ProcessElement& e = out.element;
-      slope[i + 1] = e.lags() - e.lead;
-      if (c.kind == ProcessKind::kStable && c.shapes[j] != kFirst) slope[i + 2] = slope[i + 1];
+      if (c.shapes[j] != kTied) slope[i + 1] = e.lags() - e.lead;
+      if (c.kind == ProcessKind::kStable && c.shapes[j] != kFirst && c.shapes[j] != kTied)
+        slope[i + 2] = slope[i + 1];
       if (c.shapes[j] == kLead) {
         slope[i] = e.lead / e.gain;
         slope[i + n - 2] = -scaleOf(e) / e.gain;

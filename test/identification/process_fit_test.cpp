@@ -139,6 +139,33 @@ TEST(ProcessFit, AnInputThatDoesNothingIsNotSeen) {
   EXPECT_LT(fit.elements[1].gain_bound, 0.2);
 }
 
+// Two loops that drift and disturb each other: how the weak effect begins is seen, not where it
+// ends.
+TEST(ProcessFit, AWeakEffectHasNoLagOfHours) {
+  const ProcessElement strong = lag(0.4, 11.0, 1.5, 1.5), weak = lag(0.16, 13.0, 4.0, 12.0);
+  constexpr Index kRows = 700;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    auto engine = seededEngine(seed, {11});
+    Response own[2] = {Response(strong), Response(strong)};
+    Response cross[2] = {Response(weak), Response(weak)};
+    Matrix u = Matrix::Zero(kRows, 2), y = Matrix::Zero(kRows, 2);
+    double drift[2] = {0.0, 0.0}, integral[2] = {0.0, 0.0}, level[2] = {0.0, 0.0};
+    for (Index k = 0; k < kRows; ++k)
+      for (int i = 0; i < 2; ++i) {
+        drift[i] += 0.05 * standardNormal(engine);
+        y(k, i) = own[i].next(u.col(i)) + cross[i].next(u.col(1 - i)) + drift[i] +
+                  0.1 * standardNormal(engine);
+        if (uniform(engine) < 0.15) level[i] = uniform(engine) < 0.5 ? -2.0 : 2.0;
+        integral[i] -= 0.1 * y(k, i);
+        u(k, i) = k == 0 ? 0.0 : integral[i] - 1.0 * y(k, i) + level[i];
+      }
+    const ElementEstimate found = fitProcess(u, y.col(0), 1.0).elements[1];
+    if (found.gain_bound >= std::abs(found.element.gain)) {
+      EXPECT_LE(found.element.lags(), 4.0 * strong.lags()) << seed;
+    }
+  }
+}
+
 TEST(ProcessFit, MissingRowsAreLeftOut) {
   const ProcessElement e = lag(2.0, 12.0, 3.0);
   Data d = record(e, 0.0, 0.0, 1.0, {0.01}, 400, 7);
