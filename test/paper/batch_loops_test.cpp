@@ -73,8 +73,11 @@ TEST(BatchLoops, CostsOfSwitchingSaveSwitchesAndWater) {
   }
 }
 
+// 0.1 degC on both thermometers, and a recipe that is not known ahead.
 TEST(BatchLoops, AlsoWithNoiseAndWithoutPreview) {
-  const Pooled plain = runAll("batch_fuzzy_eq44_noise"), priced = runAll("batch_fuzzy_eq45_noise");
+  const Overrides noise{{"noise.std", "{T: 0.1, Tw: 0.1}"}, {"controller.preview", "false"}};
+  const Pooled plain = runAll("batch_fuzzy_eq44", noise),
+               priced = runAll("batch_fuzzy_eq45", noise);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_GT(plain.switches[i], priced.switches[i]) << "start " << i;
     EXPECT_EQ(priced.switches[i], 2.0) << "start " << i;
@@ -82,9 +85,13 @@ TEST(BatchLoops, AlsoWithNoiseAndWithoutPreview) {
   }
 }
 
+// Another charge: a core of 20 % more heat capacity, hot water of 70 instead of 75 degC, cold of 14
+// instead of 12.
 TEST(BatchLoops, APlantUnlikeTheModelIsStillControlled) {
-  const Pooled fuzzy = runAll("batch_fuzzy_eq45_mismatch");
-  const Pooled linear = runAll("batch_linear_eq45_mismatch");
+  const Overrides charge{{"plant.parameters.core_heat_capacity", "6.25e6"},
+                         {"disturbance.nominal", "{T_H: 70, T_C: 14, T_0: 20}"}};
+  const Pooled fuzzy = runAll("batch_fuzzy_eq45", charge);
+  const Pooled linear = runAll("batch_linear_eq45", charge);
   EXPECT_LT(fuzzy.rms[0], linear.rms[0]);
   EXPECT_LT(fuzzy.rms[0], 1.0);
   EXPECT_LT(fuzzy.rms[1], 1.0);

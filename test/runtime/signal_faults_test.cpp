@@ -99,8 +99,9 @@ TEST(SignalFaults, AFrozenAnalyserIsFoundAndReplaced) {
 
 // Healthy instruments with noise, whose lines could be flat.
 TEST(SignalFaults, NoSignalOfAHealthyNoisyLoopIsCalledFrozen) {
-  for (const char* name : {"batch_fuzzy_eq44_noise", "batch_linear_eq45_noise"}) {
-    const LoopFile loop = readLoop(name);
+  for (const char* name : {"batch_fuzzy_eq44", "batch_linear_eq45"}) {
+    const LoopFile loop =
+        readLoop(name, {{"noise.std", "{T: 0.1, Tw: 0.1}"}, {"controller.preview", "false"}});
     SignalValidator validator(loop.plausibility, loop.plant_info);
     int judged = 0, frozen = 0;
     for (const SampleRecord& sample : runLoop(loop).samples) {
