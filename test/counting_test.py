@@ -160,9 +160,9 @@ class Stages(unittest.TestCase):
             (folder / ".ci").mkdir()
             (folder / "scripts").mkdir()
             shutil.copy(TOP / ".ci/run", folder / ".ci/run")
-            for name, text in (("install", "exit 0"), ("check_format", script), ("check_core", script), ("test", script)):
-                (folder / "scripts" / name).write_text(f"#!/bin/sh\n{text}\n")
-                (folder / "scripts" / name).chmod(0o755)
+            for name, text in (("scripts/install", "exit 0"), ("scripts/check_format", script), (".ci/check_core", script), ("scripts/test", script)):
+                (folder / name).write_text(f"#!/bin/sh\n{text}\n")
+                (folder / name).chmod(0o755)
             for stage in stages:
                 done = subprocess.run(["bash", folder / ".ci/run", stage], env=dict(os.environ, FMBPC_CI_SECONDS=str(seconds)),
                                       capture_output=True, text=True, timeout=60)

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""The aims below scripts/identification_table.py: of held-out figures only, and none is called reached that is not."""
+"""The aims below bench/identification_table.py: of held-out figures only, and none is called reached that is not."""
 import importlib.util
 import pathlib
 import sys
 import unittest
 
-PATH = pathlib.Path(__file__).resolve().parents[1] / "scripts" / "identification_table.py"
+PATH = pathlib.Path(__file__).resolve().parents[1] / "bench" / "identification_table.py"
 sys.path.insert(0, str(PATH.parent))
 SPEC = importlib.util.spec_from_file_location("identification_table", PATH)
 table = importlib.util.module_from_spec(SPEC)

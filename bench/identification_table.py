@@ -2,7 +2,7 @@
 """Every table of figures in docs/identification_results.md: `fmbpc identify --auto` on public records (identified from the first rows of each,
 judged on the others in free run and one step ahead), then the sections of identification_runs.py.
 
-    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--section SECTION]... [--work W] [--write]
+    FMBPC_DATA=FOLDER bench/identification_table.py [NAME..] [--section SECTION]... [--work W] [--write]
 
 NAME: of a record, and no other section. --write puts each table between its marks in docs/identification_results.md, and the models of the
 section `loops` into config/model.
@@ -17,7 +17,7 @@ import tempfile
 
 from identification_runs import SECTIONS, Records
 
-TOOL = pathlib.Path(__file__).resolve().parent / "fmbpc"
+TOOL = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "fmbpc"
 PAGE = TOOL.parent.parent / "docs" / "identification_results.md"
 BEGIN, END = "<!-- identification_table.py %s -->", "<!-- end -->"
 PLANT_INPUTS = "u1_gas_flow,u2_turbine_valves,u3_superheater_spray,u4_gas_dampers,u5_air_flow"

@@ -1,4 +1,4 @@
-"""Sections of scripts/identification_table.py that need no public record: models found by --auto in closed loop, structures chosen by
+"""Sections of bench/identification_table.py that need no public record: models found by --auto in closed loop, structures chosen by
 hand, the cases of the thesis, models with states of their own, a long record. Each function gives the lines of a table."""
 import json
 import os
@@ -9,7 +9,7 @@ import time
 import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOOL = HERE / "fmbpc"
+TOOL = HERE.parent / "scripts" / "fmbpc"
 CONFIG = HERE.parent / "config"
 CLOSE = 1.05  # of the shipped model's cost in closed loop
 AIM_OWN, AIM_OTHER = 79.0, 61.0  # VAF of x without x_r: half way from 60 and 25 to 98

@@ -2,8 +2,8 @@
 """Every shipped predictive loop beside its baseline, both with white noise of 0.5 % of the span of the setpoints on each output:
 the table of docs/noise_survey.md.
 
-    scripts/noise_survey.py [--seeds 1:3] [--percent 0.5] [FAMILY..]      # prints
-    scripts/noise_survey.py --write                                       # writes docs/noise_survey.md
+    bench/noise_survey.py [--seeds 1:3] [--percent 0.5] [FAMILY..]      # prints
+    bench/noise_survey.py --write                                       # writes docs/noise_survey.md
 """
 import argparse
 import json
@@ -96,7 +96,7 @@ def page(families, seeds, percent):
              "Explanation with figures for anyone who judges loops under noise: every shipped predictive loop beside the baseline of its family, under",
              "white noise of %g %% of the span of the setpoints on each output, seeds %s; medians of the ISE of the noise-free outputs."
              % (percent, seeds), "",
-             "    scripts/noise_survey.py --write     # makes this page", "",
+             "    bench/noise_survey.py --write     # makes this page", "",
              "The aim is a ratio of at most %g; **bold** ones miss it. `_pi_x, tuned` is the paper's PI of that case with the numbers of" % LIMIT,
              "`asp_case1_pi_x_best`. The papers' laws (`asp_case*`, `asp_clp_*`) miss it by their settings, which aim along a slow reference, more than by the noise.", "",
              "| loop | baseline | ISE without noise | with noise | ratio to the baseline |",

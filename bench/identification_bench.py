@@ -2,7 +2,7 @@
 """The plain command `fmbpc identify DATA --auto` on simulated records of many kinds, judged in free run on records with new inputs: the
 model it chose beside its linear one and beside a least-squares ARX model whose orders were chosen by free runs over the last rows.
 
-    scripts/identification_bench.py [KIND..] [--seeds N] [--first SEED] [--work W] [--tool FILE]
+    bench/identification_bench.py [KIND..] [--seeds N] [--first SEED] [--work W] [--tool FILE]
 
 Prints a table; exit code 1 if on some record the chosen model is worse than linear by more than 5 %."""
 import argparse
@@ -15,7 +15,7 @@ import tempfile
 import numpy
 from simulated_records import KINDS, records, write
 
-TOOL = pathlib.Path(__file__).resolve().parent / "fmbpc"
+TOOL = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "fmbpc"
 LOSS = 1.05  # of the linear model's error: what a chosen model may lose
 WINDOW = 5
 
