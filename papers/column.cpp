@@ -5,8 +5,8 @@
 
 #include "base/parallel.hpp"
 #include "control/pi/tuning.hpp"
-#include "identification/fopdt_identification.hpp"
 #include "papers/expression.hpp"
+#include "papers/fopdt_identification.hpp"
 #include "papers/runs.hpp"
 #include "papers/words.hpp"
 

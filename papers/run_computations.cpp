@@ -7,10 +7,10 @@
 #include "fmbpc/base/input_error.hpp"
 #include "papers/expression.hpp"
 #include "papers/runs.hpp"
+#include "papers/shortest_step.hpp"
 #include "papers/words.hpp"
 #include "runtime/run.hpp"
 #include "study/evaluate.hpp"
-#include "study/shortest_step.hpp"
 
 namespace fpc::papers {
 namespace {

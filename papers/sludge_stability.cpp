@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/paper_loop.hpp"
 #include "papers/expression.hpp"
+#include "papers/paper_loop.hpp"
 #include "papers/words.hpp"
 
 namespace fpc::papers {

@@ -39,13 +39,6 @@ const char* name(Verdict verdict) {
   return names[static_cast<int>(verdict)];
 }
 
-std::vector<Verdict> allVerdicts() {
-  std::vector<Verdict> all;
-  for (int i = 0; i <= static_cast<int>(Verdict::kNoResult); ++i)
-    all.push_back(static_cast<Verdict>(i));
-  return all;
-}
-
 bool isShort(Verdict verdict) {
   return verdict == Verdict::kNotReproduced || verdict == Verdict::kFails;
 }

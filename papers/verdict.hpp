@@ -40,7 +40,6 @@ struct Claim {
 
 Verdict verdictOf(const Claim& claim);
 const char* name(Verdict verdict);
-std::vector<Verdict> allVerdicts();
 /// Figures that fall short and statements that do not hold.
 bool isShort(Verdict verdict);
 

@@ -1,6 +1,6 @@
 // The stability table of the thesis (article 2, section 6.1) and the loop with past inputs as
 // states.
-#include "analysis/paper_loop.hpp"
+#include "papers/paper_loop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "identification/fopdt_identification.hpp"
+#include "papers/fopdt_identification.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "fmbpc/model/model_match.hpp"
-#include "identification/fopdt_identification.hpp"
 #include "model/linear_model.hpp"
 #include "paper/column_run.hpp"
 #include "paper/plain_mpc.hpp"
+#include "papers/fopdt_identification.hpp"
 #include "runtime/report.hpp"
 
 namespace fpc {

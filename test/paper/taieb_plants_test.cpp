@@ -13,11 +13,11 @@
 #include "fmbpc/base/text.hpp"
 #include "identification/identify.hpp"
 #include "identification/validation.hpp"
+#include "papers/shortest_step.hpp"
 #include "paths.hpp"
 #include "plant/integrator.hpp"
 #include "runtime/report.hpp"
 #include "runtime/run.hpp"
-#include "study/shortest_step.hpp"
 
 namespace fpc {
 namespace paper_taieb_plants_test {

@@ -51,9 +51,6 @@ class MisoEstimator {
   /// One per input; empty where nothing plausible can be read from the parameters.
   std::optional<Fopdt> element(int input) const;
   double gain(int input) const;  ///< steady gain B_j(1) / A(1), whatever the poles
-  /// Standard deviation of gain() if the residuals were white; they are not under arx with noise.
-  double gainDeviation(int input) const;
-  double residualDeviation() const;
   const Vector& theta() const { return rls_.theta(); }  ///< a's, then b's input by input, then c
   const RecursiveLeastSquares& leastSquares() const { return rls_; }
 
@@ -67,7 +64,7 @@ class MisoEstimator {
   MisoParams params_;
   RecursiveLeastSquares rls_;
   Vector regressor_, previous_;
-  double model_output_{}, residual_variance_{}, weight_{};
+  double model_output_{};
   int samples_{}, still_{};
   int unknown_{};  // samples over which a value that was not finite is still remembered
 };

@@ -1,5 +1,5 @@
 // Source of the principle: pontryagin1962, time-optimal control with one bounded input.
-#include "study/shortest_step.hpp"
+#include "papers/shortest_step.hpp"
 
 #include <algorithm>
 #include <cmath>

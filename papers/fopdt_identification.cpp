@@ -1,4 +1,4 @@
-#include "identification/fopdt_identification.hpp"
+#include "papers/fopdt_identification.hpp"
 
 #include <algorithm>
 #include <array>
@@ -104,15 +104,7 @@ bool MisoEstimator::update(VectorRef input, double y) {
   bool learned = false;
   const bool known = std::isfinite(y);
   const bool own = params_.method == MisoMethod::kOutputError && samples_ >= params_.warm_up_steps;
-  if (samples_ >= n_u_ && lively && known && unknown_ == 0) {
-    const double error = y - regressor_.dot(rls_.theta());
-    learned = rls_.update(regressor_, y);
-    if (learned) {
-      weight_ = params_.rls.forgetting * weight_ + 1.0;
-      const double left = y - regressor_.dot(rls_.theta());
-      residual_variance_ += (error * left - residual_variance_) / weight_;
-    }
-  }
+  if (samples_ >= n_u_ && lively && known && unknown_ == 0) learned = rls_.update(regressor_, y);
   unknown_ = std::max(unknown_ - 1, known || own ? 0 : n_u_);
   model_output_ = own || !known ? regressor_.dot(rls_.theta()) : y;  // after learning: a posteriori
   for (int i = n_u_ - 1; i > 0; --i) regressor_[i] = regressor_[i - 1];
@@ -151,17 +143,4 @@ double MisoEstimator::gain(int input) const {
 }
 
 // Gradient of B(1) / A(1): K / A(1) to each a, 1 / A(1) to each own b.
-double MisoEstimator::gainDeviation(int input) const {
-  const double rest = 1.0 - rls_.theta().head(n_u_).sum();
-  Vector gradient = Vector::Zero(rls_.theta().size());
-  gradient.head(n_u_).setConstant(gain(input) / rest);
-  gradient.segment(n_u_ + input * params_.numerator_terms, params_.numerator_terms)
-      .setConstant(1.0 / rest);
-  return residualDeviation() * std::sqrt(gradient.dot(rls_.covariance() * gradient));
-}
-
-double MisoEstimator::residualDeviation() const {
-  return std::sqrt(std::max(residual_variance_, 0.0));
-}
-
 }  // namespace fpc

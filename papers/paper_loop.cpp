@@ -1,4 +1,4 @@
-#include "analysis/paper_loop.hpp"
+#include "papers/paper_loop.hpp"
 
 #include "fmbpc/base/input_error.hpp"
 
