@@ -70,7 +70,7 @@ void PredictiveLaw::prepareReference(const Vector& pole) {
 void PredictiveLaw::takeOver(std::unique_ptr<LawCore> core) {
   retired_.reset();
   successor_ = std::move(core);
-  successor_->heedTrust(trust_heeded_, trust_least_);
+  successor_->setTrustThreshold(trust_heeded_, trust_least_);
   prepareReference(successor_->referencePole());
   if (inRun()) return;
   adopt();
@@ -79,11 +79,11 @@ void PredictiveLaw::takeOver(std::unique_ptr<LawCore> core) {
   if (running_) transfer_.reset(true);
 }
 
-void PredictiveLaw::heedTrust(double threshold, Eigen::Index least) {
+void PredictiveLaw::setTrustThreshold(double threshold, Eigen::Index least) {
   trust_heeded_ = threshold;
   trust_least_ = least;
   for (LawCore* core : {core_.get(), successor_.get()})
-    if (core) core->heedTrust(threshold, least);
+    if (core) core->setTrustThreshold(threshold, least);
 }
 
 void PredictiveLaw::tuningPrepared(const Vector& reference_pole) {

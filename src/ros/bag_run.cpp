@@ -20,7 +20,7 @@
 #include "fmbpc/base/text.hpp"
 #include "ros/conversions.hpp"
 #include "ros/open_bag.hpp"
-#include "ros/operator_desk.hpp"
+#include "ros/operator_commands.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {

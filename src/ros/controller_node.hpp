@@ -27,7 +27,7 @@
 #include "ros/link_listener.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
-#include "ros/operator_desk.hpp"
+#include "ros/operator_commands.hpp"
 #include "ros/optimizer_standin.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
@@ -93,7 +93,7 @@ class ControllerNode : public Node {
   LoopFile loop_;
   ControllerSession session_;
   ModelInbox inbox_;
-  OperatorDesk desk_;
+  OperatorCommands desk_;
   Comeback comeback_;                        // before all that publishes
   std::optional<OptimizerStandin> standin_;  // of a loop with an optimizer
   std::optional<Measurement> parked_;        // waits for what must be known before it

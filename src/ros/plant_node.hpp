@@ -21,7 +21,7 @@
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
-#include "ros/operator_keeper.hpp"
+#include "ros/operator_state_store.hpp"
 #include "ros/plant_publishers.hpp"
 #include "ros/ready.hpp"
 #include "ros/run_end.hpp"
@@ -98,7 +98,7 @@ class PlantNode : public Node {
   LoopFile loop_;
   PlantSession session_;
   PlantPublishers publishers_;
-  OperatorKeeper keeper_;
+  OperatorStateStore keeper_;
   ReadyListener ready_;
   std::optional<ListenerGate> listeners_;  // of the first sample: whoever records is connected
   EquipmentFrames frames_;

@@ -9,7 +9,7 @@
 #include "fmbpc/model/model_match.hpp"
 #include "model/gain_sign.hpp"
 #include "model/model_check.hpp"
-#include "supervision/reaction_watch.hpp"
+#include "supervision/actuator_effectiveness.hpp"
 
 namespace fpc {
 namespace {
@@ -326,7 +326,7 @@ void ControllerSession::setModel(const TsModel& model) {
   model_ = std::move(matched);
   gains_due_ = matters && models_ == 0;
   const int window = plausibility_.params().reaction_samples;
-  if (matters && window > 0) reaction_ = std::make_unique<ReactionWatch>(model_, window);
+  if (matters && window > 0) reaction_ = std::make_unique<ActuatorEffectiveness>(model_, window);
   ++models_;
   noteNeeds();
 }

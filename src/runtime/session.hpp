@@ -20,7 +20,7 @@
 namespace fpc {
 
 class PlantTap;
-class ReactionWatch;
+class ActuatorEffectiveness;
 class WatchedLaw;
 struct CandidateLaw;
 
@@ -162,7 +162,7 @@ class ControllerSession {
   /// In what the plant that announced itself differs from the loop file, in words; empty: in
   /// nothing. What is done about it is plausibility.plant_bounds.
   void doubtPlant(const std::string& difference);
-  /// The input that the outputs do not react to as the model says; see ReactionWatch.
+  /// The input that the outputs do not react to as the model says; see ActuatorEffectiveness.
   Notice reaction() const;
   /// Of these outputs it is not said that their setpoint was clamped.
   void withoutSetpoint(const std::vector<Eigen::Index>& outputs);
@@ -230,10 +230,10 @@ class ControllerSession {
   RecentSamples recent_;
   std::string model_text_, plant_doubt_;
   EventWriter written_;
-  EventCode model_event_{EventCode::kNone};  // that has not been said yet
-  std::vector<std::string> manual_texts_;    // by input; empty: not clamped
-  std::unique_ptr<ReactionWatch> reaction_;  // of a law with a model, if it is asked for
-  bool gains_due_{false};                    // nor have the gains been looked at
+  EventCode model_event_{EventCode::kNone};          // that has not been said yet
+  std::vector<std::string> manual_texts_;            // by input; empty: not clamped
+  std::unique_ptr<ActuatorEffectiveness> reaction_;  // of a law with a model, if it is asked for
+  bool gains_due_{false};                            // nor have the gains been looked at
   double max_pole_{1.0};
   std::uint64_t models_{};
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};

@@ -8,7 +8,7 @@
 #include "runtime/commissioning/plant_tap.hpp"
 #include "runtime/session.hpp"
 #include "runtime/watched_law.hpp"
-#include "supervision/reaction_watch.hpp"
+#include "supervision/actuator_effectiveness.hpp"
 
 namespace fpc {
 

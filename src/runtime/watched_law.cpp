@@ -85,7 +85,7 @@ void WatchedLaw::begin() {
   const Eigen::Index window = candidate_.params.step_samples;
   errors_ = ErrorPromise(window, floorsOf(plant_.outputs));
   outputs_ = errors_;
-  swings_.assign(plant_.inputs.size(), SwingWatch(kSwingMove, kSwingRelease));
+  swings_.assign(plant_.inputs.size(), OscillationDetector(kSwingMove, kSwingRelease));
   state_ = CandidateState::kWatched;
   fresh_ = true;
   seen_ = taking_ = false;
@@ -99,7 +99,7 @@ void WatchedLaw::handOver() {
   taking_ = true;
   level_ = 0;
   in_level_ = 0;
-  for (SwingWatch& swing : swings_) swing.reset();
+  for (OscillationDetector& swing : swings_) swing.reset();
   say(EventCode::kHandOver, "candidate " + candidate_.name + " is in charge with " +
                                 authorityText(authority()) + " of the allowed moves; " +
                                 textOf(trial_->figures()));
@@ -268,7 +268,7 @@ bool WatchedLaw::throws(const Measurement& now, VectorRef wish) {
   for (Eigen::Index i = 0; i < wish.size(); ++i) {
     const double range = limits_.upper[i] - limits_.lower[i];
     if (!std::isfinite(range) || range <= 0.0) continue;
-    SwingWatch& swing = swings_[static_cast<std::size_t>(i)];
+    OscillationDetector& swing = swings_[static_cast<std::size_t>(i)];
     swing.allow((wish[i] - now.input_applied[i]) / range);
     swings = swings || swing.swings();
   }

@@ -11,8 +11,8 @@
 #include "control/controller_around.hpp"
 #include "fmbpc/control/bumpless_transfer.hpp"
 #include "supervision/candidate_trial.hpp"
+#include "supervision/oscillation_detector.hpp"
 #include "supervision/promise.hpp"
-#include "supervision/swing_watch.hpp"
 
 namespace fpc {
 
@@ -37,10 +37,10 @@ const char* nameOf(CandidateState state);  ///< "none", "watched", "passed", ...
 /// (BumplessTransfer); where an optimizer follows, the prediction carries the limits instead. The
 /// authority grows every step_samples. At each sample the candidate must keep what was seen while
 /// it was watched (ErrorPromise): its model's errors one sample ahead, and the errors of the
-/// outputs; and it must not throw an input from end to end (SwingWatch). Else, or if it gives no
-/// input, the former law is back from that sample on, bumplessly, and the candidate stays out until
-/// it is watched anew. Every change of state is an event with its figures. signals(): those of the
-/// law inside, then beside_INPUT, what the law asks for that is not in charge, and
+/// outputs; and it must not throw an input from end to end (OscillationDetector). Else, or if it
+/// gives no input, the former law is back from that sample on, bumplessly, and the candidate stays
+/// out until it is watched anew. Every change of state is an event with its figures. signals():
+/// those of the law inside, then beside_INPUT, what the law asks for that is not in charge, and
 /// candidate_authority. Judging allocates; other samples do not.
 class WatchedLaw final : public ControllerAround {
  public:
@@ -101,7 +101,7 @@ class WatchedLaw final : public ControllerAround {
   CandidateLaw candidate_;
   std::optional<CandidateTrial> trial_;
   ErrorPromise errors_, outputs_;
-  std::vector<SwingWatch> swings_;
+  std::vector<OscillationDetector> swings_;
   CandidateState state_{CandidateState::kNone};
   std::size_t level_{};  // of authority
   int in_level_{};       // samples

@@ -65,11 +65,11 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
   params_.validate(n_y, n_u, countOf(plant_.disturbances));
   limits_.validate(n_u);
   if (plan_ && params_.horizon_least > 0)
-    plan_->heedTrust(params_.trust_low, params_.horizon_least);
+    plan_->setTrustThreshold(params_.trust_low, params_.horizon_least);
   if (params_.pi) pi_ = std::make_unique<PiController>(*params_.pi, limits_, plant_);
   for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
   moved_.assign(locks_.size(), true);
-  swings_.assign(locks_.size(), SwingWatch(params_.swing_move, params_.swing_release));
+  swings_.assign(locks_.size(), OscillationDetector(params_.swing_move, params_.swing_release));
   if (params_.lock_outputs.empty())
     for (Index i = 0; i < n_y; ++i) params_.lock_outputs.push_back(i);
   point_ = Vector::Zero(n_y + n_u + countOf(plant_.disturbances));
@@ -90,7 +90,7 @@ void GuardedController::reset(const Measurement& start) {
   inside_->reset(start);
   if (pi_) pi_->reset(start);
   for (LockUpWatch& lock : locks_) lock.reset();
-  for (SwingWatch& swing : swings_) swing.reset();
+  for (OscillationDetector& swing : swings_) swing.reset();
   fallback_ = false;
   above_ = 0;
   ahead_.reset();
@@ -173,7 +173,7 @@ void GuardedController::calm(const Measurement& now) {
   for (Index i = 0; i < shrunk_.move.size(); ++i) {
     const double range = limits_.upper[i] - limits_.lower[i];
     if (!std::isfinite(range) || range <= 0.0) continue;
-    SwingWatch& swing = swings_[static_cast<std::size_t>(i)];
+    OscillationDetector& swing = swings_[static_cast<std::size_t>(i)];
     const double share = swing.allow((proposed_[i] - now.input_applied[i]) / range);
     if (!swing.swings()) continue;
     shrunk_.move[i] = std::min(shrunk_.move[i], share * range);

@@ -10,7 +10,7 @@
 #include "control/controller_around.hpp"
 #include "supervision/guard_params.hpp"
 #include "supervision/horizon_trust.hpp"
-#include "supervision/swing_watch.hpp"
+#include "supervision/oscillation_detector.hpp"
 
 namespace fpc {
 
@@ -85,7 +85,8 @@ class LockUpWatch {
 ///   `horizon_least` after the longest dead time of an input do;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in, if the
 ///   model knows the input: others stand where the plant has them;
-/// - an input that the law throws from end to end of its range (see SwingWatch) moves less;
+/// - an input that the law throws from end to end of its range (see OscillationDetector) moves
+/// less;
 /// - so the guard narrows the limits of u(k): the law's input is put inside them (source `guarded`,
 ///   and an event says why), and the prediction hands them to an optimizer; where the PI acts the
 ///   source is `fallback` and there is no prediction.
@@ -125,9 +126,9 @@ class GuardedController final : public ControllerAround {
   PlantInfo plant_;
   std::unique_ptr<PiController> pi_;
   ControllerOutput pi_output_;
-  std::vector<LockUpWatch> locks_;  // one per input
-  std::vector<SwingWatch> swings_;  // one per input
-  std::vector<bool> moved_;         // by input: the model knows it, so the law may move it
+  std::vector<LockUpWatch> locks_;           // one per input
+  std::vector<OscillationDetector> swings_;  // one per input
+  std::vector<bool> moved_;                  // by input: the model knows it, so the law may move it
   TsModel model_;
   bool known_{false};  // the model says where its data were
   bool fallback_{false};

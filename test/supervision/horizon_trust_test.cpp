@@ -25,7 +25,7 @@ struct Planner final : Controller, PlanView {
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {
     point << 55.0, x + slope * static_cast<double>(i), 600.0, 1300.0;
   }
-  void heedTrust(double threshold, Eigen::Index least) override {
+  void setTrustThreshold(double threshold, Eigen::Index least) override {
     heeded = threshold;
     counted = least;
   }

@@ -18,7 +18,7 @@ class PlanView {
   /// disturbances are where the model is trusted less than `threshold` (see processTrustOf()), the
   /// first `least` after the longest dead time of an input always. A law that does not plan by
   /// errors has nothing to do.
-  virtual void heedTrust(double /*threshold*/, Eigen::Index /*least*/) {}
+  virtual void setTrustThreshold(double /*threshold*/, Eigen::Index /*least*/) {}
 };
 
 }  // namespace fpc

@@ -63,7 +63,7 @@ class LawCore {
   /// See PlanView; none by default.
   virtual Eigen::Index plannedSteps() const { return 0; }
   virtual void planned(Eigen::Index /*i*/, Eigen::Ref<Vector> /*point*/) const {}
-  virtual void heedTrust(double /*threshold*/, Eigen::Index /*least*/) {}
+  virtual void setTrustThreshold(double /*threshold*/, Eigen::Index /*least*/) {}
   virtual void adoptTuning() {}  ///< a tuning that was prepared counts from now on
 };
 
@@ -105,7 +105,7 @@ class PredictiveLaw : public Controller, public PlanView {
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {
     core_->planned(i, point);
   }
-  void heedTrust(double threshold, Eigen::Index least) override;
+  void setTrustThreshold(double threshold, Eigen::Index least) override;
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
 
  protected:

@@ -30,8 +30,8 @@ class FmbpcCore final : public LawCore {
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {
     law_->planned(*model_, i, point);
   }
-  void heedTrust(double threshold, Eigen::Index least) override {
-    law_->heedTrust(threshold, least);
+  void setTrustThreshold(double threshold, Eigen::Index least) override {
+    law_->setTrustThreshold(threshold, least);
   }
   /// Settings that adoptTuning() will take; allocates.
   void prepareTuning(const FmbpcParams& params);

@@ -32,7 +32,7 @@ class InputLaw {
   virtual Eigen::Index plannedSteps() const { return 0; }
   virtual void planned(const InternalModel& /*model*/, Eigen::Index /*i*/,
                        Eigen::Ref<Vector> /*point*/) const {}
-  virtual void heedTrust(double /*threshold*/, Eigen::Index /*least*/) {}
+  virtual void setTrustThreshold(double /*threshold*/, Eigen::Index /*least*/) {}
 };
 
 /// The outputs meet their references at one sample ahead: see CoincidenceGains. u = F e + V u(k-1).
@@ -101,7 +101,7 @@ class IteratedLaw final : public InputLaw {
   void retune(const FmbpcParams& params) override;
   Eigen::Index plannedSteps() const override { return solver_.inputs().cols(); }
   void planned(const InternalModel& model, Eigen::Index i, Eigen::Ref<Vector> point) const override;
-  void heedTrust(double threshold, Eigen::Index least) override {
+  void setTrustThreshold(double threshold, Eigen::Index least) override {
     trust_heeded_ = threshold;
     trust_least_ = least;
   }

@@ -26,7 +26,7 @@ std::vector<double> plannedInputs(int horizon, double upper, Eigen::Index least,
   model.outputs[0].upper = upper;
   const PlantInfo info = test::infoOf(model);
   FmbpcLaw law(planning(horizon), test::wideLimits(1), info);
-  if (least > 0) law.heedTrust(0.25, least);
+  if (least > 0) law.setTrustThreshold(0.25, least);
   law.setModel(model);
   SetpointSource setpoint = test::setpointOf(info, one(5.0));
   Measurement now;

@@ -21,12 +21,12 @@ namespace fpc {
 /// react once c + 2 s < kLeast for a quarter of the window, s below kSure; it does again once
 /// c - 2 s is larger. Without moves nothing is judged.
 /// Symbols:  c, s per input;  a, e, phi per output [of the output]
-class ReactionWatch {
+class ActuatorEffectiveness {
  public:
   static constexpr double kLeast = 0.35, kSure = 0.15;
 
   /// `model` is matched to the plant. @throws InputError unless samples >= 8.
-  ReactionWatch(const TsModel& model, int samples);
+  ActuatorEffectiveness(const TsModel& model, int samples);
   /// Forgets everything.
   void reset();
   /// A sample was lost or not accepted: goes on with the next one.

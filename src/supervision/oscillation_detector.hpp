@@ -12,10 +12,10 @@ namespace fpc {
 /// range down to a fiftieth; while they are less than all, wishes for more than them count as
 /// large. Without a turn they open again by half in `release` samples, and by half in every sample
 /// once all wishes of more than a window were large and one way: that is no swing.
-class SwingWatch {
+class OscillationDetector {
  public:
   /// @param large in parts of the range; 0 never finds a swing.
-  SwingWatch(double large, int release);
+  OscillationDetector(double large, int release);
   void reset();
   /// One sample: the wish minus the applied input, in parts of the range.
   /// @return the largest move allowed now, in the same parts; 1 while nothing swings.

@@ -1,4 +1,4 @@
-#include "supervision/reaction_watch.hpp"
+#include "supervision/actuator_effectiveness.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "random/dice.hpp"
 
 namespace fpc {
-namespace control_reaction_watch_test {
+namespace control_actuator_effectiveness_test {
 
 constexpr int kWindow = 40;
 
@@ -40,14 +40,14 @@ struct Process {
     m.outputs[0] = y + noise * (dice.between(-1.0, 1.0));
     return m;
   }
-  void live(ReactionWatch& watch, int samples) {
+  void live(ActuatorEffectiveness& watch, int samples) {
     for (int k = 0; k < samples; ++k)
       watch.look(step(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0)));
   }
 };
 
-TEST(ReactionWatch, SeesTheWholeReactionOfAProcessThatIsItsModel) {
-  ReactionWatch watch(model(), kWindow);
+TEST(ActuatorEffectiveness, SeesTheWholeReactionOfAProcessThatIsItsModel) {
+  ActuatorEffectiveness watch(model(), kWindow);
   Process process;
   watch.look(process.m);
   process.live(watch, kWindow + 1);
@@ -56,9 +56,9 @@ TEST(ReactionWatch, SeesTheWholeReactionOfAProcessThatIsItsModel) {
   EXPECT_EQ(watch.notice().code, EventCode::kNone);
 }
 
-TEST(ReactionWatch, NamesTheInputThatStandsStillAndForgetsItWhenItMoves) {
+TEST(ActuatorEffectiveness, NamesTheInputThatStandsStillAndForgetsItWhenItMoves) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    ReactionWatch watch(model(), kWindow);
+    ActuatorEffectiveness watch(model(), kWindow);
     Process process;
     process.dice = Dice(seed);
     process.noise = 0.02;
@@ -74,8 +74,8 @@ TEST(ReactionWatch, NamesTheInputThatStandsStillAndForgetsItWhenItMoves) {
   }
 }
 
-TEST(ReactionWatch, AnInputThatPushesTheOtherWayIsNamedToo) {
-  ReactionWatch watch(model(), kWindow);
+TEST(ActuatorEffectiveness, AnInputThatPushesTheOtherWayIsNamedToo) {
+  ActuatorEffectiveness watch(model(), kWindow);
   Process process;
   process.part2 = -1.0;
   process.live(watch, 2 * kWindow);
@@ -83,9 +83,9 @@ TEST(ReactionWatch, AnInputThatPushesTheOtherWayIsNamedToo) {
   EXPECT_STREQ(watch.notice().signal, "u2");
 }
 
-TEST(ReactionWatch, AGainThatIsOffByAThirdOrDoubleIsNoFault) {
+TEST(ActuatorEffectiveness, AGainThatIsOffByAThirdOrDoubleIsNoFault) {
   for (const double part : {0.7, 2.0}) {
-    ReactionWatch watch(model(), kWindow);
+    ActuatorEffectiveness watch(model(), kWindow);
     Process process;
     process.part1 = process.part2 = part;
     process.noise = 0.02;
@@ -94,8 +94,8 @@ TEST(ReactionWatch, AGainThatIsOffByAThirdOrDoubleIsNoFault) {
   }
 }
 
-TEST(ReactionWatch, NothingIsSaidWithoutMovesNorInNoise) {
-  ReactionWatch watch(model(), kWindow);
+TEST(ActuatorEffectiveness, NothingIsSaidWithoutMovesNorInNoise) {
+  ActuatorEffectiveness watch(model(), kWindow);
   Process process;
   process.part1 = process.part2 = 0.0;
   process.noise = 0.1;
@@ -107,8 +107,8 @@ TEST(ReactionWatch, NothingIsSaidWithoutMovesNorInNoise) {
   EXPECT_EQ(watch.notice().code, EventCode::kNone);
 }
 
-TEST(ReactionWatch, ASteadyDisturbanceIsNoFault) {
-  ReactionWatch watch(model(), kWindow);
+TEST(ActuatorEffectiveness, ASteadyDisturbanceIsNoFault) {
+  ActuatorEffectiveness watch(model(), kWindow);
   Process process;
   process.noise = 0.02;
   process.live(watch, kWindow);
@@ -117,9 +117,9 @@ TEST(ReactionWatch, ASteadyDisturbanceIsNoFault) {
   EXPECT_EQ(watch.notice().code, EventCode::kNone);
 }
 
-TEST(ReactionWatch, AWindowOfFewSamplesIsRefused) {
-  EXPECT_THROW(ReactionWatch(model(), 7), InputError);
+TEST(ActuatorEffectiveness, AWindowOfFewSamplesIsRefused) {
+  EXPECT_THROW(ActuatorEffectiveness(model(), 7), InputError);
 }
 
-}  // namespace control_reaction_watch_test
+}  // namespace control_actuator_effectiveness_test
 }  // namespace fpc

@@ -15,10 +15,10 @@
 
 namespace fpc {
 
-class OperatorKeeper : public Node {
+class OperatorStateStore : public Node {
  public:
   /// `name`: of the plant.
-  OperatorKeeper(ros::NodeHandle node, const LoopFile& loop, std::string name);
+  OperatorStateStore(ros::NodeHandle node, const LoopFile& loop, std::string name);
   void beginRun(std::uint64_t run_id);  ///< what was asked in the run before is forgotten
   /// Sample 0 is next: says what stands, which is nothing but for a real plant whose gateway came
   /// back.

@@ -1,4 +1,4 @@
-#include "supervision/reaction_watch.hpp"
+#include "supervision/actuator_effectiveness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ Spread spreadOf(Index n, const At& at) {
 
 }  // namespace
 
-ReactionWatch::ReactionWatch(const TsModel& model, int samples)
+ActuatorEffectiveness::ActuatorEffectiveness(const TsModel& model, int samples)
     : parts_(model), names_(namesOf(model.inputs)) {
   require(samples >= 8, "plausibility.reaction_samples", "0 or an integer >= 8");
   const Index n_y = countOf(model.outputs), n_u = countOf(model.inputs);
@@ -49,7 +49,7 @@ ReactionWatch::ReactionWatch(const TsModel& model, int samples)
   reset();
 }
 
-void ReactionWatch::reset() {
+void ActuatorEffectiveness::reset() {
   parts_.reset();
   filled_ = place_ = 0;
   share_.setConstant(kNaN);
@@ -58,20 +58,21 @@ void ReactionWatch::reset() {
   notice_ = {};
 }
 
-void ReactionWatch::look(const Measurement& now) {
+void ActuatorEffectiveness::look(const Measurement& now) {
   if (!parts_.look(now)) return;
   keep();
   if (filled_ == errors_.cols()) judge();
 }
 
-void ReactionWatch::keep() {
+void ActuatorEffectiveness::keep() {
   errors_.col(place_) = parts_.error();
   phi_.col(place_) = parts_.effect();
   place_ = (place_ + 1) % errors_.cols();
   filled_ = std::min(filled_ + 1, errors_.cols());
 }
 
-void ReactionWatch::estimate(Index output, Index input, double& share, double& error) const {
+void ActuatorEffectiveness::estimate(Index output, Index input, double& share,
+                                     double& error) const {
   const Index n = errors_.cols(), row = input * errors_.rows() + output;
   const auto in_order = [&](Index k) { return (place_ + k) % n; };
   const auto phi = [&](Index k) { return phi_(row, in_order(k)); };
@@ -90,7 +91,7 @@ void ReactionWatch::estimate(Index output, Index input, double& share, double& e
   share = 1.0 + slope;
 }
 
-void ReactionWatch::judge() {
+void ActuatorEffectiveness::judge() {
   notice_ = {};
   const int patience = std::max(3, static_cast<int>(errors_.cols() / 4));
   for (std::size_t i = 0; i < names_.size(); ++i) {

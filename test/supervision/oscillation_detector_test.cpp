@@ -1,5 +1,5 @@
 // Inputs thrown from end to end: found, calmed, and told from steps that are meant.
-#include "supervision/swing_watch.hpp"
+#include "supervision/oscillation_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <random>
 
 namespace fpc {
-namespace control_swing_watch_test {
+namespace control_oscillation_detector_test {
 
-TEST(SwingWatch, ThirdTurnIsASwingAndEachFurtherOneHalvesTheMoves) {
-  SwingWatch watch(0.25, 100);
+TEST(OscillationDetector, ThirdTurnIsASwingAndEachFurtherOneHalvesTheMoves) {
+  OscillationDetector watch(0.25, 100);
   EXPECT_EQ(watch.allow(0.5), 1.0);
   EXPECT_EQ(watch.allow(-0.5), 1.0);
   EXPECT_EQ(watch.allow(0.1), 1.0) << "a small move between is no end of it";
@@ -22,8 +22,8 @@ TEST(SwingWatch, ThirdTurnIsASwingAndEachFurtherOneHalvesTheMoves) {
   EXPECT_EQ(watch.allow(-0.5), 0.02);
 }
 
-TEST(SwingWatch, OpensByHalfInItsTime) {
-  SwingWatch watch(0.25, 10);
+TEST(OscillationDetector, OpensByHalfInItsTime) {
+  OscillationDetector watch(0.25, 10);
   for (int k = 0; k < 4; ++k) watch.allow(k % 2 == 0 ? -0.5 : 0.5);
   double allowed = 0.0;
   for (int k = 0; k < 10; ++k) allowed = watch.allow(0.0);
@@ -33,11 +33,11 @@ TEST(SwingWatch, OpensByHalfInItsTime) {
   EXPECT_FALSE(watch.swings());
 }
 
-TEST(SwingWatch, StepsWithPausesAndOneWayTravelAreNoSwings) {
+TEST(OscillationDetector, StepsWithPausesAndOneWayTravelAreNoSwings) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 engine(seed);
     std::uniform_real_distribution<double> size(0.26, 1.0), small(-0.25, 0.25);
-    SwingWatch watch(0.25, 100);
+    OscillationDetector watch(0.25, 100);
     for (int k = 0; k < 400; ++k) {
       const double sign = (k / 12) % 2 == 0 ? 1.0 : -1.0;
       ASSERT_EQ(watch.allow(k % 12 == 0 ? sign * size(engine) : small(engine)), 1.0) << seed;
@@ -46,8 +46,8 @@ TEST(SwingWatch, StepsWithPausesAndOneWayTravelAreNoSwings) {
   }
 }
 
-TEST(SwingWatch, WishHeldOneWayForMoreThanAWindowIsNoSwing) {
-  SwingWatch watch(0.25, 250);
+TEST(OscillationDetector, WishHeldOneWayForMoreThanAWindowIsNoSwing) {
+  OscillationDetector watch(0.25, 250);
   for (int k = 0; k < 30; ++k) watch.allow(k % 2 == 0 ? -0.5 : 0.5);
   ASSERT_TRUE(watch.swings());
   double allowed = 0.0;
@@ -58,10 +58,10 @@ TEST(SwingWatch, WishHeldOneWayForMoreThanAWindowIsNoSwing) {
   EXPECT_FALSE(watch.swings());
 }
 
-TEST(SwingWatch, OffMeansOff) {
-  SwingWatch watch(0.0, 100);
+TEST(OscillationDetector, OffMeansOff) {
+  OscillationDetector watch(0.0, 100);
   for (int k = 0; k < 50; ++k) EXPECT_EQ(watch.allow(k % 2 == 0 ? -1.0 : 1.0), 1.0);
 }
 
-}  // namespace control_swing_watch_test
+}  // namespace control_oscillation_detector_test
 }  // namespace fpc

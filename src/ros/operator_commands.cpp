@@ -1,4 +1,4 @@
-#include "ros/operator_desk.hpp"
+#include "ros/operator_commands.hpp"
 
 #include <utility>
 
@@ -29,8 +29,8 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
   return wishes;
 }
 
-OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
-                           ControllerSession& session, std::function<void()> known)
+OperatorCommands::OperatorCommands(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                                   ControllerSession& session, std::function<void()> known)
     : Node(node, loop, std::move(name)),
       session_(session),
       known_(std::move(known)),
@@ -39,14 +39,14 @@ OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::stri
       state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
       setpoint_active_(node.advertise<fmbpc::Setpoint>(topics::kSetpointActive,
                                                        queueOf(ListenerKind::kPeer), true)),
-      subscriber_(subscribe(node, topics::kOperatorKept, 1, &OperatorDesk::onKept, this)) {}
+      subscriber_(subscribe(node, topics::kOperatorKept, 1, &OperatorCommands::onKept, this)) {}
 
-void OperatorDesk::onKept(const fmbpc::OperatorState::ConstPtr& msg) {
+void OperatorCommands::onKept(const fmbpc::OperatorState::ConstPtr& msg) {
   kept_ = *msg;
   known_();
 }
 
-bool OperatorDesk::mayStart(const Measurement& sample) {
+bool OperatorCommands::mayStart(const Measurement& sample) {
   const bool first = session_.counts().accepted == 0;
   if (first && sample.header.step == 0 && !keeper_expected_) return true;
   if (!first && (!goes_on_ || sample.header.run_id == session_.answer().base.header.run_id))
@@ -63,7 +63,7 @@ bool OperatorDesk::mayStart(const Measurement& sample) {
   return true;
 }
 
-void OperatorDesk::takeUp(const fmbpc::OperatorState& msg) {
+void OperatorCommands::takeUp(const fmbpc::OperatorState& msg) {
   deadline_s_ = -1;
   changed_ = true;
   if (msg.node.empty()) return;  // nothing was asked
@@ -73,7 +73,7 @@ void OperatorDesk::takeUp(const fmbpc::OperatorState& msg) {
     session_.carryOver();
 }
 
-void OperatorDesk::restore(const fmbpc::OperatorState& msg) {
+void OperatorCommands::restore(const fmbpc::OperatorState& msg) {
   const OperatorWishes wishes = wishesOf(msg);
   for (const Command& setpoint : wishes.setpoints)
     ROS_INFO("%s: setpoint of %s restored", name().c_str(), join(setpoint.name).c_str());
@@ -82,7 +82,7 @@ void OperatorDesk::restore(const fmbpc::OperatorState& msg) {
   session_.restore(wishes);
 }
 
-void OperatorDesk::tell(const StepHeader& sample) {
+void OperatorCommands::tell(const StepHeader& sample) {
   if (!changed_) return;
   tellSetpoints();
   if (session_.counts().accepted == 0) return;  // of which run, is not known yet: it is said then
@@ -90,7 +90,7 @@ void OperatorDesk::tell(const StepHeader& sample) {
   state_.publish(message(sample));
 }
 
-fmbpc::OperatorState OperatorDesk::message(const StepHeader& sample) const {
+fmbpc::OperatorState OperatorCommands::message(const StepHeader& sample) const {
   const OperatorWishes wishes = session_.wishes();
   fmbpc::OperatorState msg;
   msg.header.stamp = toStamp(sample.time_ns);
@@ -114,7 +114,7 @@ fmbpc::OperatorState OperatorDesk::message(const StepHeader& sample) const {
 }
 
 // What stands; if nothing does, a release without names says so.
-void OperatorDesk::tellSetpoints() {
+void OperatorCommands::tellSetpoints() {
   const std::vector<Command> commands = session_.setpoint().inForce();
   for (const Command& command : commands) setpoint_active_.publish(toSetpointMsg(command));
   if (commands.empty())

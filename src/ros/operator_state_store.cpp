@@ -1,4 +1,4 @@
-#include "ros/operator_keeper.hpp"
+#include "ros/operator_state_store.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -12,23 +12,23 @@ constexpr double kKeptPatience = 2.0;  // [s] for the word of a controller that 
 
 }  // namespace
 
-OperatorKeeper::OperatorKeeper(ros::NodeHandle node, const LoopFile& loop, std::string name)
+OperatorStateStore::OperatorStateStore(ros::NodeHandle node, const LoopFile& loop, std::string name)
     : Node(node, loop, std::move(name)),
       goes_on_(loop.gateway.enabled()),
       kept_(node.advertise<fmbpc::OperatorState>(topics::kOperatorKept, 1, true)),
       model_kept_(node.advertise<fmbpc::FuzzyModel>(topics::kModelKept, 1, true)),
-      subscriber_(subscribe(node, topics::kOperatorState, 10, &OperatorKeeper::onState, this)) {
+      subscriber_(subscribe(node, topics::kOperatorState, 10, &OperatorStateStore::onState, this)) {
   if (loop.has_identify || loop.has_model)
-    model_subscriber_ = subscribe(node, topics::kFuzzyModel, 1, &OperatorKeeper::onModel, this);
+    model_subscriber_ = subscribe(node, topics::kFuzzyModel, 1, &OperatorStateStore::onModel, this);
 }
 
-void OperatorKeeper::beginRun(std::uint64_t run_id) {
+void OperatorStateStore::beginRun(std::uint64_t run_id) {
   run_id_ = run_id;
   model_kept_.publish(fmbpc::FuzzyModel());
 }
 
 // An empty message (of no node) says that nothing was asked yet, so that nobody waits for more.
-void OperatorKeeper::start() {
+void OperatorStateStore::start() {
   fmbpc::OperatorState stands;
   if (standing_) {
     stands = *standing_;
@@ -41,27 +41,27 @@ void OperatorKeeper::start() {
   begun_ = true;
 }
 
-void OperatorKeeper::onState(const fmbpc::OperatorState::ConstPtr& msg) {
+void OperatorStateStore::onState(const fmbpc::OperatorState::ConstPtr& msg) {
   if (msg->run_id == run_id_)
     kept_.publish(*msg);
   else if (goes_on_ && !begun_)
     standing_ = *msg;
 }
 
-void OperatorKeeper::hear(const fmbpc::LoopState& state) {
+void OperatorStateStore::hear(const fmbpc::LoopState& state) {
   const auto& controllers = authority().publishersOf(topics::kTracking);
   if (std::find(controllers.begin(), controllers.end(), state.node) == controllers.end()) return;
   heard_ = true;
   was_in_run_ = state.run_id != 0 && state.run_id != run_id_;
 }
 
-bool OperatorKeeper::knowsWhatStands(double now_s) {
+bool OperatorStateStore::knowsWhatStands(double now_s) {
   if (!goes_on_ || begun_ || standing_ || (heard_ && !was_in_run_)) return true;
   if (since_s_ < 0) since_s_ = now_s;
   return now_s - since_s_ > kKeptPatience;
 }
 
-void OperatorKeeper::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
+void OperatorStateStore::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
   if (msg->run_id == run_id_) model_kept_.publish(*msg);
 }
 

@@ -18,11 +18,11 @@ namespace fpc {
 /// unknown mode.
 OperatorWishes wishesOf(const fmbpc::OperatorState& msg);
 
-class OperatorDesk : public Node {
+class OperatorCommands : public Node {
  public:
   /// `name`: of the controller. `known` is called when what was asked before may be known now.
-  OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
-               ControllerSession& session, std::function<void()> known);
+  OperatorCommands(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                   ControllerSession& session, std::function<void()> known);
 
   /// False: the sample is not to be answered yet, since what was asked before is not known. The
   /// first one is answered after a second, held (see ControllerSession::holdUntilReleased); the

@@ -1,4 +1,4 @@
-#include "supervision/swing_watch.hpp"
+#include "supervision/oscillation_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,17 +16,17 @@ constexpr double kOpening = 1.5;  // in `release` samples; in one while wishes g
 
 }  // namespace
 
-SwingWatch::SwingWatch(double large, int release)
+OscillationDetector::OscillationDetector(double large, int release)
     : large_(large), opening_(std::pow(kOpening, 1.0 / std::max(1, release))) {}
 
-void SwingWatch::reset() {
+void OscillationDetector::reset() {
   allowed_ = 1.0;
   last_ = at_ = one_way_ = 0;
   since_ = kWindow;
   std::fill(std::begin(turned_), std::end(turned_), 0);
 }
 
-double SwingWatch::allow(double wish) {
+double OscillationDetector::allow(double wish) {
   if (large_ <= 0.0 || !std::isfinite(wish)) return 1.0;
   const double large = swings() ? std::min(large_, kAllOfIt * allowed_) : large_;
   const int direction = std::abs(wish) <= large ? 0 : wish > 0.0 ? 1 : -1;
