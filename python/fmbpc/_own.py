@@ -136,5 +136,5 @@ def check(cls, *, loop=None) -> list[str]:
 def in_place_of(source, cls) -> dict[str, Any]:
     """What `set` needs for a law of one's own in a loop: its section is the class and its parameters, no optimizer follows."""
     from fmbpc._loop import Loop
-    optimizer = {"clp.enabled": False} if Loop(source)._core.has_optimizer else {}
+    optimizer = {"clp": False} if Loop(source)._core.has_optimizer else {}
     return {"controller": {"type": _name_of(cls), **dict(getattr(cls, "parameters", {}))}, **optimizer}

@@ -41,7 +41,7 @@ constexpr EventKind kKinds[] = {
     {C::kHorizonTooShort, "horizon_too_short", kW, "controller.horizon_steps is too short: an input hardly acts within it", "the plan does not see what the input does", "set the horizon behind the longest delay"},
     {C::kSolverLimit, "solver_limit", kW, "a search or solver reached its limit", "the best plan found so far is used", "raise the limit (iterations, node_budget), or shorten the horizon"},
     {C::kPlanNotFound, "plan_not_found", kW, "the solver found no usable plan", "the plan of the sample before goes on", "look at weights, limits and the model"},
-    {C::kNoAllowedInput, "no_allowed_input", kW, "no sequence of inputs is allowed", "the nearest allowed input is sent", "look at controller.forbidden and the input's position"},
+    {C::kNoAllowedInput, "no_allowed_input", kW, "no sequence of inputs is allowed", "the nearest allowed input is sent", "look at controller.inputs and the input's position"},
     {C::kReferenceHeldBack, "reference_held_back", kI, "an output is farther from its reference than controller.reference_holdback", "the law aims at a nearer reference", "none, after an upset; else raise reference_holdback"},
     {C::kLockUp, "lock_up", kW, "an input stands at a bound while the error stays, and goes on with less of it", "its bound is drawn in (guard.lock_step)", "the gain's sign differs from the model's there"},
     {C::kOscillation, "oscillation", kW, "the law throws an input from end to end of its range", "its moves shrink (guard.swing_move)", "weigh the moves, or lengthen the horizon"},

@@ -264,6 +264,13 @@ YamlSection YamlSection::section(const std::string& key) {
   return {mappingOf(node), file_, pathOf(key), trace_};
 }
 
+YamlSection YamlSection::sectionOrOff(const std::string& key, bool& off) {
+  const YAML::Node node = raw(key);
+  bool is = true;
+  off = node.IsDefined() && node.IsScalar() && YAML::convert<bool>::decode(node, is) && !is;
+  return {off ? YAML::Node(YAML::NodeType::Map) : mappingOf(node), file_, pathOf(key), trace_};
+}
+
 std::vector<YamlSection> YamlSection::list(const std::string& key) {
   const YAML::Node node = raw(key);
   std::vector<YamlSection> sections;

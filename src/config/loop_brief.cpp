@@ -20,7 +20,7 @@ std::string scalar(const YAML::Node& root, const std::string& section, const std
 bool hasClp(const YAML::Node& root) {
   const YAML::Node clp = root["clp"];
   if (!clp.IsDefined() || clp.IsNull()) return false;
-  return !clp.IsMap() || !clp["enabled"].IsDefined() || clp["enabled"].as<bool>(true);
+  return clp.IsMap();
 }
 
 void collectUnset(const YAML::Node& node, std::vector<std::string>& unset) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "config/gone_keys.hpp"
 #include "config/plant_sample_model.hpp"
 #include "config/plugins.hpp"
 #include "config/read.hpp"
@@ -86,37 +87,7 @@ void addResolution(const LoopFile& loop, ControllerContext& context) {
   }
 }
 
-}  // namespace
-
-const ControllerType& LoopFile::controllerType() const {
-  require(controller != nullptr, name + ": controller", "a section controller that was read");
-  return controller->type();
-}
-
-ControllerContext controllerContext(const LoopFile& loop) {
-  const ActuatorParams& actuator = loop.simulation.actuator;
-  ControllerContext context{loop.plant_info,
-                            actuator.limits,
-                            actuator.initial,
-                            actuator.fallback,
-                            loop.disturbance_nominal,
-                            loop.simulation.noise_std,
-                            loop.has_clp ? loop.clp.perturbation_steps : 0,
-                            nullptr};
-  addResolution(loop, context);
-  if (!loop.external_plant)
-    context.plant_model = [simulation = loop.simulation](int integration_steps) {
-      return makePlantSampleModel(simulation, integration_steps);
-    };
-  return context;
-}
-
-TsModel matchToLoop(const TsModel& model, const LoopFile& loop) {
-  const SignalUse use = loop.controller->signalUse(controllerContext(loop));
-  return matchToPlant(model, loop.plant_info, use.estimated);
-}
-
-LoopFile readSections(YamlSection& root, const std::string& name) {
+LoopFile readKnownSections(YamlSection& root, const std::string& name) {
   LoopFile loop;
   LoopNames names;
   requireKnownSections(root);
@@ -148,6 +119,45 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readReport(root, loop, names);
   root.finish();
   return loop;
+}
+
+}  // namespace
+
+const ControllerType& LoopFile::controllerType() const {
+  require(controller != nullptr, name + ": controller", "a section controller that was read");
+  return controller->type();
+}
+
+ControllerContext controllerContext(const LoopFile& loop) {
+  const ActuatorParams& actuator = loop.simulation.actuator;
+  ControllerContext context{loop.plant_info,
+                            actuator.limits,
+                            actuator.initial,
+                            actuator.fallback,
+                            loop.disturbance_nominal,
+                            loop.simulation.noise_std,
+                            loop.has_clp ? loop.clp.perturbation_steps : 0,
+                            nullptr};
+  addResolution(loop, context);
+  if (!loop.external_plant)
+    context.plant_model = [simulation = loop.simulation](int integration_steps) {
+      return makePlantSampleModel(simulation, integration_steps);
+    };
+  return context;
+}
+
+TsModel matchToLoop(const TsModel& model, const LoopFile& loop) {
+  const SignalUse use = loop.controller->signalUse(controllerContext(loop));
+  return matchToPlant(model, loop.plant_info, use.estimated);
+}
+
+LoopFile readSections(YamlSection& root, const std::string& name) {
+  try {
+    return readKnownSections(root, name);
+  } catch (const InputError& e) {
+    explainGoneKeys(root, e.what());
+    throw;
+  }
 }
 
 LoopFile readLoop(const std::string& name_or_path, const Overrides& overrides) {

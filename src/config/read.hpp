@@ -37,8 +37,8 @@ void readTargets(YamlSection& root, LoopFile& loop);
 /// `recipe`: what a batch plant does one after the other, as entries of a schedule.
 std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
                                      const std::vector<std::string>& outputs);
-/// A time under the key `stem`_s, `stem`_min or `stem`_h, in hours; unchanged if there is none.
-void readHours(YamlSection& section, const std::string& stem, double& hours);
+/// A time that stands there in seconds, in hours; unchanged if there is none.
+void readHours(YamlSection& section, const std::string& key, double& hours);
 /// Keys separator, decimal, missing_values.
 void readCsvFormat(YamlSection& section, CsvFormat& format);
 /// Key `disturbance.csv`.

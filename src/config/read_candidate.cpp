@@ -8,10 +8,7 @@ void readCandidate(YamlSection& root, LoopFile& loop) {
   CandidateFile& candidate = loop.candidate;
   section.text("loop", candidate.file);
   section.integer("samples", candidate.params.samples, 40, 10000);
-  section.integer("horizon", candidate.params.horizon, 1, 1000);
-  section.number("confidence", candidate.params.confidence, {0.5, 0.9999});
   section.numbers("authority", candidate.params.authority, {0.0, 1.0, true});
-  section.integer("step_samples", candidate.params.step_samples, 5, 10000);
   section.boolean("automatic", candidate.params.automatic);
   checked(section, [&] { candidate.params.validate(); });
   section.finish();

@@ -103,17 +103,12 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
   section.number("output_penalty", clp.output_penalty, kFinitePositive);
   YamlSection qp = section.section("qp");
   qp.integer("max_iterations", clp.qp.max_iterations, 1);
-  qp.number("feasibility_tolerance", clp.qp.feasibility_tolerance, kFinitePositive);
   checked(qp, [&] { clp.qp.validate(); });
   qp.finish();
 }
 
-/// The section is there, and its key `enabled` does not switch it off.
-bool isEnabled(YamlSection& root, const std::string& name, YamlSection& section) {
-  const bool there = root.has(name) && !root.raw(name).IsNull();
-  bool enabled = there;
-  section.boolean("enabled", enabled);
-  return there && enabled;
+bool isThere(const YamlSection& root, const std::string& name) {
+  return root.has(name) && !root.raw(name).IsNull();
 }
 
 /// Zones become soft limits of the optimizer, unless its section has others; a rank above another
@@ -199,8 +194,9 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 }
 
 void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
-  YamlSection section = root.section("clp");
-  loop.has_clp = isEnabled(root, "clp", section);
+  bool off = false;
+  YamlSection section = root.sectionOrOff("clp", off);
+  loop.has_clp = isThere(root, "clp") && !off;
   const Eigen::Index n_y = countOf(names.outputs), n_u = countOf(names.inputs);
   defaultClp(loop.clp, n_y, n_u);
   readClpParams(section, loop.clp, names);
@@ -216,19 +212,20 @@ void readController(YamlSection& root, LoopFile& loop) {
   for (const auto& name : controllerNames())
     if (controllerType(name).predicts) predicting.push_back(name);
   section.fail("type", "a controller that predicts (" + join(predicting) +
-                           ") for clp; clp.enabled: false switches the optimizer off");
+                           ") for clp; clp: false takes the optimizer out");
 }
 
 void readTargets(YamlSection& root, LoopFile& loop) {
-  YamlSection section = root.section("targets");
-  const bool enabled = isEnabled(root, "targets", section);
+  bool off = false;
+  YamlSection section = root.sectionOrOff("targets", off);
+  const bool enabled = isThere(root, "targets") && !off;
   const ControllerContext context = controllerContext(loop);
   loop.targets = readTargetParams(section, context);
   loop.targets.enabled = enabled;
   section.finish();
   if (!enabled) return;
   if (loop.controllerType().open_loop)
-    section.fail("enabled", "false, or a controller that follows setpoints");
+    root.fail("targets", "false, or a controller that follows setpoints");
   checked(section, [&] { loop.targets.validate(loop.plant_info, context.limits); });
   limitOptimizer(loop);
 }

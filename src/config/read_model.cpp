@@ -11,13 +11,11 @@ namespace fpc {
 namespace {
 
 void readOnline(YamlSection& identify, OnlineParams& params) {
-  YamlSection section = identify.section("online");
-  params.enabled = identify.has("online");
-  section.boolean("enabled", params.enabled);
+  bool off = false;
+  YamlSection section = identify.sectionOrOff("online", off);
+  params.enabled = identify.has("online") && !off;
   section.integer("every", params.every, 1);
   section.number("forgetting", params.rls.forgetting, {0.0, 1.0, true});
-  section.number("initial_covariance", params.rls.initial_covariance, kFinitePositive);
-  section.number("covariance_bound", params.rls.covariance_bound, kFinitePositive);
   checked(section, [&] { params.validate(); });
   section.finish();
 }

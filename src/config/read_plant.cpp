@@ -100,7 +100,6 @@ void readExternal(YamlSection& plant, LoopFile& loop, LoopNames& names) {
   need(plant, "name", "a name");
   plant.text("name", info.name);
   info.frame_id = info.name;
-  plant.text("frame_id", info.frame_id);
   info.outputs = readSignals(plant, "outputs", names.outputs);
   info.inputs = readSignals(plant, "inputs", names.inputs);
   info.disturbances = readSignals(plant, "disturbances", names.disturbances);

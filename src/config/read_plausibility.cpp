@@ -66,11 +66,13 @@ void readSignals(YamlSection& signals, const LoopFile& loop, const std::vector<S
 }  // namespace
 
 void readPlausibility(YamlSection& root, LoopFile& loop) {
-  YamlSection section = root.section("plausibility");
+  bool off = false;
+  YamlSection section = root.sectionOrOff("plausibility", off);
   PlausibilityParams& params = loop.plausibility;
   const PlantInfo& plant = loop.plant_info;
   const ActuatorParams& actuator = loop.simulation.actuator;
-  params.enabled = params.gain_sign = true;
+  params.enabled = !off;
+  params.gain_sign = true;
   params.bridge_samples = kBridged;
   params.fallback = actuator.fallback;
   params.range_falls = root.section("actuator").has("fallback");  // an initial input is none
@@ -79,8 +81,6 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   for (const Eigen::Index hidden : loop.estimator.outputs)
     params.needs[static_cast<std::size_t>(hidden)] = false;  // estimated, whatever is measured
   double margin = 0.1;
-  section.boolean("enabled", params.enabled);
-  section.integer("hold_samples", params.hold_samples, -1);
   section.integer("bridge_samples", params.bridge_samples, 0);
   section.number("margin", margin, kFiniteNotNegative);
   section.boolean("gain_sign", params.gain_sign);
@@ -88,7 +88,6 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   readOption(section, "reaction", params.reaction);
   readOption(section, "plant_bounds", params.plant_bounds);
   section.integer("stuck_samples", loop.stuck.samples, 0);
-  section.number("stuck_tolerance", loop.stuck.tolerance, {0.0, 1.0});
   loop.stuck.hold = loop.gateway.enabled();
   readOption(section, "stuck", loop.stuck.hold, {{"say", false}, {"hold", true}});
   YamlSection signals = section.section("signals");

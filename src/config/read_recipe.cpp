@@ -1,20 +1,14 @@
-// Times in the unit that suits, and recipes: what a batch plant does one thing after the other.
+// Recipes: what a batch plant does one thing after the other.
 #include <cmath>
 
 #include "config/read.hpp"
 
 namespace fpc {
 
-void readHours(YamlSection& section, const std::string& stem, double& hours) {
-  int given = 0;
-  for (const auto& [unit, seconds] : {std::pair{"_s", 1.0}, {"_min", 60.0}, {"_h", 3600.0}}) {
-    const std::string key = stem + unit;
-    double value = 0.0;
-    section.number(key, value, {0.0, 3.6e10});
-    if (!section.has(key)) continue;
-    hours = value * seconds / 3600.0;
-    if (++given > 1) section.fail(key, "the time in one unit");
-  }
+void readHours(YamlSection& section, const std::string& key, double& hours) {
+  double seconds = 3600.0 * hours;
+  section.number(key, seconds, {0.0, 3.6e10});
+  if (section.has(key)) hours = seconds / 3600.0;
 }
 
 std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
@@ -25,8 +19,8 @@ std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
     SetpointStep entry;
     double hold_h = 0.0;
     entry.time_h = time_h;
-    readHours(item, "ramp", entry.ramp_h);
-    readHours(item, "hold", hold_h);
+    readHours(item, "ramp_s", entry.ramp_h);
+    readHours(item, "hold_s", hold_h);
     entry.value = Vector::Constant(static_cast<Eigen::Index>(outputs.size()), std::nan(""));
     for (std::size_t i = 0; i < outputs.size(); ++i)
       item.number(outputs[i], entry.value[static_cast<Eigen::Index>(i)], kFinite);

@@ -70,9 +70,12 @@ void letGatewayForward(const GatewayParams& gateway, std::vector<std::string>& s
 
 void readFrame(YamlSection& item, EquipmentFrame& frame) {
   item.text("parent", frame.parent);
-  item.number("x", frame.x, kFinite);
-  item.number("y", frame.y, kFinite);
-  item.number("z", frame.z, kFinite);
+  Vector position(3);
+  position << frame.x, frame.y, frame.z;
+  item.vector("position", position, 3, kFinite);
+  frame.x = position[0];
+  frame.y = position[1];
+  frame.z = position[2];
   item.finish();
 }
 
@@ -141,9 +144,9 @@ ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outpu
   if (item.has("output") && std::count(outputs.begin(), outputs.end(), window.output) == 0)
     item.fail("output", "one of " + join(outputs));
   window.to_h = -1.0;
-  readHours(item, "from", window.from_h);
-  readHours(item, "to", window.to_h);
-  if (!(window.to_h >= window.from_h)) item.fail("to_h", "a time not before from");
+  readHours(item, "from_s", window.from_h);
+  readHours(item, "to_s", window.to_h);
+  if (!(window.to_h >= window.from_h)) item.fail("to_s", "a time not before from_s");
   item.finish();
   return window;
 }
@@ -185,8 +188,6 @@ void readRing(YamlSection& root, LoopFile& loop) {
   section.number("ready_timeout_s", loop.ring.ready_timeout_s, {0.0, 1e6, true});
   section.boolean("publish_clock", loop.ring.publish_clock);
   section.number("action_timeout_s", loop.ring.action_timeout_s, kFinitePositive);
-  section.number("optimizer_timeout_s", loop.ring.optimizer_timeout_s, kFinitePositive);
-  section.number("commands_per_s", loop.ring.commands_per_s, kFinitePositive);
   loop.ring.publishers = ringPublishers(loop);
   readPublishers(section, loop.ring);
   letGatewayForward(loop.gateway, loop.ring.publishers["setpoint"]);
@@ -210,7 +211,6 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   const auto n_y = static_cast<Eigen::Index>(names.outputs.size());
   Vector lower = Vector::Constant(n_y, -kInfinity);
   Vector upper = Vector::Constant(n_y, kInfinity);
-  section.text("title", loop.report.title);
   section.byName("output_lower", lower, names.outputs);
   section.byName("output_upper", upper, names.outputs);
   if ((lower.array() > upper.array()).any()) section.fail("output_upper", "limits >= output_lower");

@@ -49,12 +49,10 @@ Vector declaredNoise(const LoopFile& loop, const std::vector<std::string>& measu
   return std;
 }
 
-void readNoiseOf(YamlSection& section, const LoopFile& loop, const SignalNames& names,
-                 std::vector<WatchedSignal>& signals) {
+void setNoise(const LoopFile& loop, const SignalNames& names, std::vector<WatchedSignal>& signals) {
   std::vector<std::string> measured = names.outputs;
   measured.insert(measured.end(), names.disturbances.begin(), names.disturbances.end());
-  Vector std = declaredNoise(loop, measured);
-  section.byName("noise_std", std, measured, kFiniteNotNegative);
+  const Vector std = declaredNoise(loop, measured);
   const auto n_y = static_cast<Index>(names.outputs.size());
   for (WatchedSignal& signal : signals)
     signal.noise_std = std[signal.is_output ? signal.place : n_y + signal.place];
@@ -80,7 +78,6 @@ AffineTerm readTerm(YamlSection& item, const SignalNames& names) {
   item.number("about", term.about, kFinite);
   if (term.about == 0.0) item.fail("about", "a number other than 0");
   item.number("gain", term.gain, kFinite);
-  item.number("lag_h", term.lag_h, kFiniteNotNegative);
   item.finish();
   return term;
 }
@@ -88,18 +85,16 @@ AffineTerm readTerm(YamlSection& item, const SignalNames& names) {
 }  // namespace
 
 void readStandstill(YamlSection& root, LoopFile& loop) {
-  YamlSection section = root.section("standstill");
+  bool off = false;
+  YamlSection section = root.sectionOrOff("standstill", off);
   const PlantInfo& plant = loop.plant_info;
   const SignalNames names{namesOf(plant.outputs), namesOf(plant.inputs),
                           namesOf(plant.disturbances)};
   StandstillParams& params = loop.standstill;
-  bool enabled = true;
   double window_h = 6.0;
-  section.boolean("enabled", enabled);
   section.number("window_h", window_h, kFinitePositive);
   double noise_window_h = 4.0 * window_h;
   section.number("noise_window_h", noise_window_h, kFinitePositive);
-  section.number("others_change", params.others_change, kFinitePositive);
   params.window_samples =
       std::max(2, static_cast<int>(std::lround(window_h * 3600.0 / plant.sample_time_s)));
   params.noise_window_samples =
@@ -108,14 +103,13 @@ void readStandstill(YamlSection& root, LoopFile& loop) {
   readWatched(signals, names.outputs, true, params.signals);
   readWatched(signals, names.disturbances, false, params.signals);
   signals.finish();
-  readNoiseOf(section, loop, names, params.signals);
+  setNoise(loop, names, params.signals);
   params.usual = loop.disturbance_nominal;
   section.byName("usual", params.usual, names.disturbances, kFinite);
   params.fallback = loop.simulation.actuator.initial;
   section.byName("fallback", params.fallback, names.inputs, kFinite);
   for (auto& item : section.list("fallback_plan"))
     params.fallback_plan.push_back(readTerm(item, names));
-  if (!enabled) params.signals.clear();
   section.finish();
 }
 

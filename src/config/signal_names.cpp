@@ -69,10 +69,8 @@ void requireSignalNames(const YamlSection& plant, const LoopFile& loop, const Lo
   const auto place = [&](const char* group) {
     return [&plant, &loop, group](std::size_t i) { return placeOf(plant, loop, group, i); };
   };
-  requireWords(
-      names.outputs,
-      {"time_h", "ramp_s", "ramp_min", "ramp_h", "hold_s", "hold_min", "hold_h", "seed", "step_s"},
-      place("outputs"));
+  requireWords(names.outputs, {"time_h", "ramp_h", "ramp_s", "hold_s", "seed", "step_s"},
+               place("outputs"));
   requireWords(names.inputs, {}, place("inputs"));
   requireWords(names.disturbances, {"seed", "step_s"}, place("disturbances"));
   Columns columns(plant.where(plant.has("matrix") ? "matrix" : "type"));

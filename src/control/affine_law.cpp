@@ -13,7 +13,6 @@ void validate(const AffineTerm& term, const std::string& key, Eigen::Index targe
   require(!term.outputs.empty() || !term.disturbances.empty(), key + "of", "at least one signal");
   require(std::isfinite(term.about) && term.about != 0.0, key + "about", "a number other than 0");
   require(std::isfinite(term.gain), key + "gain", "a finite number");
-  require(std::isfinite(term.lag_h) && term.lag_h >= 0.0, key + "lag_h", "a time >= 0 h");
 }
 
 double product(const AffineTerm& term, VectorRef outputs, VectorRef disturbances) {
@@ -25,29 +24,20 @@ double product(const AffineTerm& term, VectorRef outputs, VectorRef disturbances
 
 }  // namespace
 
-AffineLaw::AffineLaw(std::vector<AffineTerm> terms, Eigen::Index targets, double sample_time_h)
-    : terms_(std::move(terms)),
-      value_(terms_.size(), 0.0),
-      sum_(Vector::Zero(targets)),
-      sample_time_h_(sample_time_h) {
+AffineLaw::AffineLaw(std::vector<AffineTerm> terms, Eigen::Index targets)
+    : terms_(std::move(terms)), value_(terms_.size(), 0.0), sum_(Vector::Zero(targets)) {
   for (std::size_t i = 0; i < terms_.size(); ++i)
     validate(terms_[i], "term[" + std::to_string(i) + "].", targets);
 }
 
-void AffineLaw::reset() { fresh_ = true; }
-
-const Vector& AffineLaw::follow(VectorRef outputs, VectorRef disturbances, std::uint32_t step) {
-  const double hours = sample_time_h_ * static_cast<double>(step - last_step_);
+const Vector& AffineLaw::follow(VectorRef outputs, VectorRef disturbances) {
   sum_.setZero();
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const AffineTerm& term = terms_[i];
     const double aim = term.gain * (product(term, outputs, disturbances) / term.about - 1.0);
-    const double kept = fresh_ || term.lag_h == 0.0 ? 0.0 : std::exp(-hours / term.lag_h);
-    if (std::isfinite(aim)) value_[i] = aim + kept * (value_[i] - aim);
+    if (std::isfinite(aim)) value_[i] = aim;
     sum_[term.target] += value_[i];
   }
-  last_step_ = step;
-  fresh_ = false;
   return sum_;
 }
 

@@ -27,7 +27,7 @@ PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimit
       proposal_(Vector::Zero(countOf(plant_.inputs))),
       last_input_(limits_.lower) {
   limits_.validate(countOf(plant_.inputs));
-  require(disturbances_.size() == countOf(plant_.disturbances), "controller.disturbance_nominal",
+  require(disturbances_.size() == countOf(plant_.disturbances), "disturbance.nominal",
           std::to_string(plant_.disturbances.size()) + " numbers");
   for (const auto& output : plant_.outputs)
     for (const auto& name : output_signals) signals_.emplace_back(output.name + "_" + name, 0.0);

@@ -14,9 +14,8 @@ void PredictiveLawParams::validate(Eigen::Index n_y) const {
   require(reference_holdback.size() == 0 ||
               (reference_holdback.size() == n_y && reference_holdback.minCoeff() > 0.0),
           "controller.reference_holdback", std::to_string(n_y) + " numbers > 0");
-  require(disturbance_nominal.allFinite(), "controller.disturbance_nominal", "finite numbers");
-  require(transfer_decay >= 0.0 && transfer_decay < 1.0, "controller.transfer_decay",
-          "a number >= 0 and < 1");
+  require(disturbance_nominal.allFinite(), "disturbance_nominal", "finite numbers");
+  require(transfer_decay >= 0.0 && transfer_decay < 1.0, "transfer_decay", "a number >= 0 and < 1");
   require(prediction_steps >= 1 && prediction_steps <= 100000, "controller.prediction_steps",
           "an integer from 1 to 100000");
 }
@@ -31,8 +30,6 @@ void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
                  {0.0, kInfinity, true});
   section.boolean("preview", params.preview);
   section.boolean("disturbance_feedforward", params.disturbance_feedforward);
-  section.byName("disturbance_nominal", params.disturbance_nominal, loop.disturbances(), kFinite);
-  section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
   readPredictionSteps(section, loop, params.prediction_steps);
 }
 

@@ -30,7 +30,8 @@ void readEstimated(YamlSection& observer, ObserverParams& params,
 
 bool readObserver(YamlSection& controller, ObserverParams& params, const ControllerContext& loop,
                   ObserverKey key) {
-  YamlSection section = controller.section("observer");
+  bool off = false;
+  YamlSection section = controller.sectionOrOff("observer", off);
   params.noise_std = loop.noise_std;
   if (params.noise_std.size() == 0) params.noise_std = Vector::Zero(loop.outputCount());
   section.byName("noise_std", params.noise_std, loop.outputs(), kFiniteNotNegative);
@@ -44,15 +45,10 @@ bool readObserver(YamlSection& controller, ObserverParams& params, const Control
     if (section.has("input_std")) params.input_std = stated;
   }
   if (key == ObserverKey::kEstimated) readEstimated(section, params, loop.disturbances());
-  section.boolean("adaptive", params.adaptive);
-  section.number("adaptation", params.adaptation, {0.0, 1.0, true});
-  if (params.adaptive && !section.has("disturbance_std") && !params.noise_std.any())
-    section.fail("disturbance_std", "numbers > 0 where adaptive is to find the noise");
-  bool enabled = params.noisy();
-  if (key != ObserverKey::kAlways) section.boolean("enabled", enabled);
+  if (off && key == ObserverKey::kAlways) controller.fail("observer", "a mapping");
   checked(section, [&] { params.validate(static_cast<Eigen::Index>(loop.outputs().size())); });
   section.finish();
-  return enabled;
+  return params.noisy() && !off;
 }
 
 }  // namespace fpc

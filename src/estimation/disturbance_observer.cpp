@@ -40,8 +40,6 @@ void ObserverParams::validate(Index n_y) const {
     require(std::isfinite(d.std) && d.std > 0.0, key + ".std", "a number > 0");
     require(std::isfinite(d.walk_std) && d.walk_std >= 0.0, key + ".walk_std", "a number >= 0");
   }
-  require(adaptation > 0.0 && adaptation < 1.0, "controller.observer.adaptation",
-          "a number > 0 and < 1");
 }
 
 DisturbanceObserver::DisturbanceObserver(ObserverParams params, Index n_x,
@@ -121,16 +119,6 @@ bool DisturbanceObserver::computeGain() {
   return K_.allFinite();
 }
 
-/// R + alpha (nu^2 - C P C' - R), never negative: what the filter does not expect of itself.
-void DisturbanceObserver::learnNoise() {
-  for (Index i = 0; i < n_y_; ++i) {
-    const double own = PC_(rows_[static_cast<std::size_t>(i)], i);
-    const double excess = innovation_[i] * innovation_[i] - own;
-    const double change = params_.disturbance_std[i];
-    R_[i] = std::max(R_[i] + params_.adaptation * (excess - R_[i]), kLeastNoise * change * change);
-  }
-}
-
 bool DisturbanceObserver::correct(VectorRef outputs, Eigen::Ref<Vector> state) {
   if (!computeGain()) {
     innovation_.setZero();
@@ -149,7 +137,6 @@ bool DisturbanceObserver::correct(VectorRef outputs, Eigen::Ref<Vector> state) {
     for (Index row = 0; row < P_.rows(); ++row)
       for (Index column = 0; column < P_.cols(); ++column)
         P_(row, column) += K_(row, i) * R_[i] * K_(column, i);
-  if (params_.adaptive) learnNoise();
   return true;
 }
 

@@ -25,10 +25,8 @@ struct ObserverParams {
   Vector noise_std;        ///< n_y, of the measurements; 0: all of an error is disturbance
   Vector disturbance_std;  ///< n_y, of the change of d per sample, > 0
   std::vector<EstimatedDisturbance> estimated;  ///< by observers on a model
-  Vector input_std;         ///< n_u: d adds to the inputs instead and changes by this; empty: not
-  bool adaptive{false};     ///< the noise's variance is learned from the innovations
-  double adaptation{0.02};  ///< how fast, per sample, (0, 1)
-  bool noisy() const { return adaptive || noise_std.any(); }
+  Vector input_std;  ///< n_u: d adds to the inputs instead and changes by this; empty: not
+  bool noisy() const { return noise_std.any(); }
   bool atInputs() const { return input_std.size() > 0; }
   /// @throws InputError naming controller.observer.KEY.
   void validate(Eigen::Index n_y) const;
@@ -62,7 +60,6 @@ class DisturbanceObserver {
   const Vector& disturbance() const { return disturbance_; }  ///< n_y or n_u, d(k|k)
   const Vector& innovation() const { return innovation_; }    ///< n_y, y - C x(k|k-1)
   const Matrix& gain() const { return K_; }                   ///< (n_x + n_y) n_y
-  const Vector& noiseVariance() const { return R_; }          ///< n_y, as it is used
   /// x += E d, in place; of disturbances at the outputs.
   void addDisturbance(Eigen::Ref<Vector> state) const;
 
@@ -71,7 +68,6 @@ class DisturbanceObserver {
     return params_.atInputs() ? params_.input_std : params_.disturbance_std;
   }
   bool computeGain();
-  void learnNoise();
 
   ObserverParams params_;
   Eigen::Index n_x_, n_y_, n_d_;

@@ -6,14 +6,13 @@ namespace fpc {
 
 std::unique_ptr<LawCode> makeLawCode(BlockParts& parts) {
   const LoopFile& loop = parts.loop;
-  require(
-      !loop.targets.enabled, loop.name + ": targets",
-      "targets.enabled: false; the target layer is not exported, its law alone would follow other "
-      "setpoints");
+  require(!loop.targets.enabled, loop.name + ": targets",
+          "targets: false; the target layer is not exported, its law alone would follow other "
+          "setpoints");
   for (const auto make : {&makePiCode, &makeSupervisorCode, &makeFmbpcCode, &makeOptimalCode})
     if (std::unique_ptr<LawCode> code = make(parts)) {
       require(!loop.has_clp || code->optimizer() != nullptr, loop.name + ": clp",
-              "clp.enabled: false; the law predicts nothing for the constraint optimizer");
+              "clp: false; the law predicts nothing for the constraint optimizer");
       return code;
     }
   const std::string& type = loop.controllerType().name;

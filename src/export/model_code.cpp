@@ -568,7 +568,7 @@ PredictiveCode::PredictiveCode(BlockParts& parts, const PredictiveLawParams& par
   require(!params.preview, parts.loop.name + ": controller.preview",
           "false: a block gets setpoints as they come and cannot look ahead");
   require(params.disturbance_feedforward || params.disturbance_nominal.size() == parts.n_d,
-          parts.loop.name + ": controller.disturbance_nominal", "a number for each disturbance");
+          parts.loop.name + ": disturbance.nominal", "a number for each disturbance");
   require(model.unmeasured.empty(), parts.loop.name + ": controller.observer.estimated",
           "nothing: the exported block estimates no disturbance");
   reference_ = p_.states("reference", Kind::kReal, b_.n_y);

@@ -12,7 +12,6 @@ namespace {
 // A bound is a sum in another order than the cost it stays below: rounding must not cut the
 // optimum.
 constexpr double kRounding = 1.0 - 1e-9;
-constexpr std::uint64_t kNodesPerQuestion = 64;
 
 }  // namespace
 
@@ -48,11 +47,8 @@ double TreeSearch::fullTree(int choices, int levels) {
 }
 
 bool TreeSearch::mustStop() {
-  if (stopped_) return true;
   if (params_.budget > 0 && result_.nodes + levels_.front().children.size() > params_.budget)
     stopped_ = true;
-  else if (found_ && *stop_ && result_.nodes % kNodesPerQuestion < levels_.front().children.size())
-    stopped_ = (*stop_)();
   return stopped_;
 }
 
@@ -106,10 +102,8 @@ void TreeSearch::explore(int level, int before, double cost, VectorRef state) {
   }
 }
 
-const TreeResult& TreeSearch::search(TreeProblem& problem, VectorRef start,
-                                     const std::function<bool()>& stop) {
+const TreeResult& TreeSearch::search(TreeProblem& problem, VectorRef start) {
   problem_ = &problem;
-  stop_ = &stop;
   found_ = stopped_ = false;
   result_.cost = kInfinity;
   result_.nodes = result_.bounds = 0;

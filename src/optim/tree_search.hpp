@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "fmbpc/base/types.hpp"
@@ -32,8 +31,8 @@ struct TreeSearchParams {
 
 enum class TreeStatus {
   kOptimal,
-  kBudget,      ///< stopped by budget or by the caller: the best sequence found so far
-  kImpossible,  ///< no sequence is allowed (or none was found before the stop)
+  kBudget,      ///< stopped by the budget: the best sequence found so far
+  kImpossible,  ///< no sequence is allowed (or none was found within the budget)
 };
 
 struct TreeResult {
@@ -54,9 +53,8 @@ class TreeSearch {
  public:
   /// @throws InputError naming the field.
   TreeSearch(Eigen::Index state_size, int choices, TreeSearchParams params);
-  /// No allocation. `stop`, asked every 64 nodes once there is a sequence, ends the search early.
-  const TreeResult& search(TreeProblem& problem, VectorRef start,
-                           const std::function<bool()>& stop = {});
+  /// No allocation.
+  const TreeResult& search(TreeProblem& problem, VectorRef start);
   /// Nodes of the full tree: n + n^2 + ... + n^levels.
   static double fullTree(int choices, int levels);
 
@@ -82,7 +80,6 @@ class TreeSearch {
   std::vector<int> path_;
   Vector scratch_;
   TreeProblem* problem_{nullptr};
-  const std::function<bool()>* stop_{nullptr};
   bool found_{false}, stopped_{false};
   TreeResult result_;
 };

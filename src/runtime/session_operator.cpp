@@ -95,7 +95,7 @@ void ControllerSession::handOver(bool on) {
 void ControllerSession::test(std::shared_ptr<PlantTap> tap) {
   require(!tap_ || !tap_->open(), "test", "no other one that goes on");
   require(!leads_an_optimizer_, "test",
-          "a loop without a constraint optimizer, whose plan would undo it: clp.enabled false");
+          "a loop without a constraint optimizer, whose plan would undo it: clp: false");
   tap_ = std::move(tap);
 }
 

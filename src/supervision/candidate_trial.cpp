@@ -42,9 +42,6 @@ const char* nameOf(TrialResult result) {
 
 void CandidateParams::validate() const {
   require(samples >= 40, "candidate.samples", "an integer >= 40");
-  require(horizon >= 1, "candidate.horizon", "an integer >= 1");
-  require(confidence > 0.0 && confidence < 1.0, "candidate.confidence", "a number > 0 and < 1");
-  require(step_samples >= 5, "candidate.step_samples", "an integer >= 5");
   require(!authority.empty() && authority.back() == 1.0, "candidate.authority",
           "shares that end with 1");
   for (std::size_t i = 0; i < authority.size(); ++i)

@@ -11,7 +11,7 @@ namespace fpc {
 using Eigen::Index;
 
 HorizonErrors::HorizonErrors(const TsModel* model, int horizon, Index capacity) {
-  require(horizon >= 1, "candidate.horizon", "an integer >= 1");
+  require(horizon >= 1, "horizon", "an integer >= 1");
   require(capacity > 0, "candidate.samples", "an integer > 0");
   if (model != nullptr) local_.emplace(*model);
   for (int h = 1; h < horizon; h *= 2) horizons_.push_back(h);

@@ -86,7 +86,7 @@ constexpr const char* kActionWords[kActions] = {"its last good value is used",
 }  // namespace
 
 void PlausibilityParams::validate(std::size_t n_y, std::size_t n_d, Eigen::Index n_u) const {
-  require(hold_samples >= -1, "plausibility.hold_samples", "an integer >= -1");
+  require(hold_samples >= -1, "actuator.hold_samples", "an integer >= -1");
   require(bridge_samples >= 0, "plausibility.bridge_samples", "an integer >= 0");
   require(fallback.size() == 0 || (fallback.size() == n_u && fallback.allFinite()),
           "plausibility: fallback", "a finite number per input");

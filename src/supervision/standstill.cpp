@@ -9,11 +9,15 @@ namespace fpc {
 
 using Eigen::Index;
 
+namespace {
+
+constexpr double kOthersChange = 0.1;  // of its mean: what drives the plant has moved by so much
+
+}  // namespace
+
 void StandstillParams::validate(Index n_y, Index n_u, Index n_d) const {
   require(window_samples >= 2, "standstill.window_h", "at least two samples");
   require(noise_window_samples >= 8, "standstill.noise_window_h", "at least eight samples");
-  require(others_change > 0.0 && std::isfinite(others_change), "standstill.others_change",
-          "a number > 0");
   require(usual.size() == n_d && usual.allFinite(), "standstill.usual",
           std::to_string(n_d) + " finite numbers");
   require(fallback.size() == n_u && fallback.allFinite(), "standstill.fallback",
@@ -55,7 +59,7 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
   limits_.validate(n_u);
   window_ = SignalWindow(n_y_ + n_d + n_u,
                          std::max(params_.window_samples, params_.noise_window_samples));
-  plan_ = AffineLaw(params_.fallback_plan, n_u, plant.sample_time_s / 3600.0);
+  plan_ = AffineLaw(params_.fallback_plan, n_u);
   for (const WatchedSignal& signal : params_.signals)
     texts_.push_back(signal.name + (signal.is_output ? " stands still: the fallback acts"
                                                      : " stands still: its usual value is used"));
@@ -63,7 +67,6 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
 
 void StandstillWatch::reset(const Measurement& start) {
   inside_->reset(start);
-  plan_.reset();
   window_.clear();
   std::fill(still_.begin(), still_.end(), false);
   std::fill(least_.begin(), least_.end(), kInfinity);
@@ -106,7 +109,7 @@ bool StandstillWatch::showsTheSame(std::size_t i) const {
   return window_.holds(n) && window_.span(rowOf(signal), n) < signal.least_change &&
          !isAtLimit(i, window_.mean(rowOf(signal), n)) &&
          othersMove(signal, signal.is_output, [&](Index other) {
-           return window_.span(other, n) > params_.others_change * std::abs(window_.mean(other, n));
+           return window_.span(other, n) > kOthersChange * std::abs(window_.mean(other, n));
          });
 }
 
@@ -120,8 +123,7 @@ bool StandstillWatch::showsOnlyNoise(std::size_t i) const {
          window_.variance(rowOf(signal), n) < mostVariance(n) * noise &&
          !isAtLimit(i, window_.mean(rowOf(signal), n)) &&
          othersMove(signal, false, [&](Index other) {
-           return window_.meansMove(other, n,
-                                    params_.others_change * std::abs(window_.mean(other, n)));
+           return window_.meansMove(other, n, kOthersChange * std::abs(window_.mean(other, n)));
          });
 }
 
@@ -161,8 +163,7 @@ void StandstillWatch::watch(const Measurement& now) {
 void StandstillWatch::fallBack(const Measurement& now, const SetpointSource& setpoint,
                                ControllerOutput& output) {
   output.input = params_.fallback;
-  if (!plan_.empty())
-    output.input += plan_.follow(seen_.outputs, seen_.disturbances, now.header.step);
+  if (!plan_.empty()) output.input += plan_.follow(seen_.outputs, seen_.disturbances);
   limits_.clip(output.input, now.input_applied);
   output.source = ActionSource::kFallback;
   output.reference = setpoint.present();

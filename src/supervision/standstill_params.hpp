@@ -23,7 +23,6 @@ struct StandstillParams {
   std::vector<WatchedSignal> signals;  ///< empty: nothing is watched
   int window_samples{24};
   int noise_window_samples{96};  ///< of signals with noise, in eight blocks
-  double others_change{0.1};     ///< what drives the plant must have moved by this part of its mean
   Vector usual;                  ///< n_d, the law's value of a disturbance that stands still
   Vector fallback;               ///< n_u, the input while an output stands still ...
   std::vector<AffineTerm> fallback_plan;  ///< ... and what the other signals add to it

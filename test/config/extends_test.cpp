@@ -131,9 +131,8 @@ TEST_F(Extends, AnEmptyMappingKeepsAndAnEmptySectionOverNothingIsNone) {
   EXPECT_EQ(readLoop("heated_tank", {{"guard", "{}"}}).guard.lock_samples, 0);
   EXPECT_FALSE(same(readLoop("heated_tank", {{"actuator", "{}"}}))) << "begins with the defaults";
   EXPECT_TRUE(readLoop("asp_case1_clp").has_clp);
-  EXPECT_FALSE(
-      readLoop(write("c.yaml", "extends: asp_case1_clp\nclp: {enabled: false}\n")).has_clp);
-  EXPECT_FALSE(readLoop("asp_case1_clp", {{"clp.enabled", "false"}}).has_clp);
+  EXPECT_FALSE(readLoop(write("c.yaml", "extends: asp_case1_clp\nclp: false\n")).has_clp);
+  EXPECT_FALSE(readLoop("asp_case1_clp", {{"clp", "false"}}).has_clp);
 }
 
 TEST_F(Resolve, OverridesReachScalarsItemsAndNewKeys) {
@@ -241,7 +240,7 @@ TEST_F(Resolve, SampleLinesGiveTheTransportDelay) {
   const std::string file =
       write("loop.yaml",
             smallLoop() +
-                "tf:\n  frames:\n    lab: {parent: reactor, x: 3, y: 4, z: 0}\n"
+                "tf:\n  frames:\n    lab: {parent: reactor, position: [3, 4, 0]}\n"
                 "  sample_lines:\n    - {output: x, from: reactor, to: lab, velocity_m_s: 0.5}\n");
   const LoopFile loop = readLoop(file);
   EXPECT_EQ(loop.simulation.output_delay_s, (std::vector<double>{0.0, 10.0}));

@@ -55,10 +55,17 @@ std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
       R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|actuator\.lag|)"
-      R"(controller\.inputs\[\]|controller\.levels|controller\.observer\.estimated|controller\.forbidden\[\]|report\.consumption|gateway\.tags|targets\.outputs|targets\.inputs|plausibility\.signals|standstill\.signals)\.[\w/]+)");
+      R"(controller\.inputs\[\]|controller\.observer\.estimated|report\.consumption|gateway\.tags|targets\.outputs|targets\.inputs|plausibility\.signals|standstill\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
   path = std::regex_replace(path, std::regex(R"(^guard\.pi\.)"), "controller.");
+  path = std::regex_replace(path, std::regex(R"(^targets\.observer\.)"), "controller.observer.");
+  path = std::regex_replace(path, std::regex(R"(^setpoint\.commands)"), "disturbance.commands");
+  path =
+      std::regex_replace(path, std::regex(R"(^controller\.model\[\])"), "plant.matrix.elements[]");
+  path = std::regex_replace(path, std::regex(R"(^loop\.publishers\.\w+)"), "loop.publishers.TOPIC");
+  const std::regex signals(R"(^plant\.(matrix\.)?(outputs|inputs|disturbances)\[\]\.)");
+  path = std::regex_replace(path, signals, "plant.$1SIGNALS[].");
   const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(?!\w+_(?:s|min|h)$)\w+$)");
   return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
 }
@@ -83,8 +90,8 @@ std::set<std::string> readerKeys() {
       "disturbance:\n  source: constant\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
       "  pattern: {channels: {q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}\n"
       "  csv: {channels: {q_i: {column: a, plausible: [0, 1]}}}\n"
-      "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {plant: {x: "
-      "1}}\n"
+      "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {plant: "
+      "{position: [1, 0, 0]}}\n"
       "  sample_lines: [{output: s, from: plant, to: reactor, velocity_m_s: 1}]\n";
   const std::string fmbpc =
       "plant: {type: activated_sludge}\ncontroller: {type: fmbpc}\nmodel: {file: " + sourceDir() +
@@ -102,18 +109,18 @@ std::set<std::string> readerKeys() {
   const std::string prbs =
       controlled(excitation + "prbs}]\n  feedback: [{input: q_r, output: s, gain: 1}]\n");
   const std::string levels =
-      controlled(excitation + "multi_level, hold_lower_steps: 1, hold_upper_steps: 2}]\n");
+      controlled(excitation + "multi_level, hold_lower_s: 720, hold_upper_s: 720}]\n");
   const std::string steps = controlled(excitation + "steps, schedule: [{time_h: 1, value: 2}]}]\n");
   const std::string batch =
       "plant: {type: batch_reactor}\nsampling: {sample_time_s: 10, duration_h: 1}\n"
-      "setpoint: {recipe: [{T: 30, hold_h: 1}]}\nmodel: {file: " +
+      "setpoint: {recipe: [{T: 30, hold_s: 3600}]}\nmodel: {file: " +
       sourceDir() + "/config/model/batch_fuzzy.yaml}\n" +
       "actuator: {initial: {kM: 0}}\ncontroller:\n  type: hybrid_mpc\n  horizon_blocks: 1\n  ";
   const std::string rest =
-      "\n  forbidden: [{kM: 0.5, kC: 1}]\n  forbidden_transitions: [{from: {kM: 0}, to: {kM: 2}}]\n"
+      "\n  forbidden_transitions: [{from: {kM: 0}, to: {kM: 2}}]\n"
       "  cost: {switching: [{before: kH, after: kC, weight: 1}], travel: [{input: kM, weight: "
       "1}]}\n"
-      "report: {windows: [{name: w, to_h: 1}], consumption: {water_kg: {kM: 1}}}\n";
+      "report: {windows: [{name: w, to_s: 3600}], consumption: {water_kg: {kM: 1}}}\n";
   const std::string signal = "[{name: NAME, unit: g, nominal: 0, lower: -1, upper: 1}]";
   const auto named = [&](const std::string& name) {
     return std::regex_replace(signal, std::regex("NAME"), name);
@@ -131,7 +138,7 @@ std::set<std::string> readerKeys() {
       "plant: {type: distillation_column}\ncontroller: {type: adaptive_pi, decoupling: false, "
       "loops: "
       "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
-      "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
+      "integral_time_min: 1}], model: [{output: y_D, from: L, gain: 1, time_constant_min: 1}]}\n";
   std::vector<std::string> texts{controlled(fmbpc + lists),
                                  controlled(external),
                                  controlled(column),
@@ -140,8 +147,7 @@ std::set<std::string> readerKeys() {
                                  prbs,
                                  levels,
                                  steps,
-                                 batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
-                                 batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
+                                 batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest};
   for (const char* loop : {"example_external", "cstr_modbus", "cstr_tracking_rate"})
     texts.push_back(resolveLoop(loop));
   for (const auto& type : controllerNames())
@@ -225,11 +231,6 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.integration_steps", std::to_string(nmpc.integration_steps)},
           {"controller.swarm.particles", std::to_string(swarm.particles)},
           {"controller.swarm.iterations", std::to_string(swarm.iterations)},
-          {"controller.swarm.inertia_start", exactText(swarm.inertia_start)},
-          {"controller.swarm.inertia_end", exactText(swarm.inertia_end)},
-          {"controller.swarm.cognitive", exactText(swarm.cognitive)},
-          {"controller.swarm.social", exactText(swarm.social)},
-          {"controller.swarm.speed_upper", exactText(swarm.speed_upper)},
           {"controller.swarm.seed", std::to_string(swarm.seed)},
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
           {"controller.iterations", std::to_string(law.iterations)},
@@ -240,40 +241,29 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.reference_lead_steps", std::to_string(law.reference_lead_steps)},
           {"controller.offset_gain", exactText(law.offset_gain)},
           {"controller.disturbance_feedforward", word(law.disturbance_feedforward)},
-          {"controller.transfer_decay", exactText(law.transfer_decay)},
           {"controller.move_steps", std::to_string(optimal.tuning.move_steps)},
           {"controller.solve", wordOf(optimal.solve)},
           {"controller.disturbance", wordOf(optimal.disturbance)},
           {"controller.disturbance_gain", exactText(optimal.disturbance_gain)},
           {"controller.loops[].ki_per_h", exactText(pi.ki_per_h)},
           {"controller.loops[].reverse", word(pi.reverse)},
-          {"controller.observer.adaptation", exactText(law.observer.adaptation)},
           {"guard.trust_low", exactText(loop.guard.trust_low)},
           {"guard.trust_high", exactText(loop.guard.trust_high)},
-          {"guard.least_move", exactText(loop.guard.least_move)},
           {"guard.return_samples", std::to_string(loop.guard.return_samples)},
           {"guard.lock_samples", std::to_string(loop.guard.lock_samples)},
           {"guard.lock_error", exactText(loop.guard.lock_error)},
           {"guard.lock_step", exactText(loop.guard.lock_step)},
-          {"guard.lock_release", std::to_string(loop.guard.lock_release)},
           {"guard.swing_move", exactText(loop.guard.swing_move)},
-          {"guard.swing_release", std::to_string(loop.guard.swing_release)},
           {"controller.loops[].anti_windup", wordOf(pi.anti_windup)},
           {"controller.loops[].start", wordOf(pi.start)},
           {"controller.seed", std::to_string(ExcitationParams{}.seed)},
           {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
-          {"controller.signals[].clock_steps", std::to_string(ExcitationSignal{}.clock_steps)},
-          {"controller.signals[].start_steps", std::to_string(ExcitationSignal{}.start_steps)},
           {"model.max_pole", exactText(loop.max_pole)},
           {"model.identify.window", std::to_string(loop.identify.window)},
           {"model.identify.validation_share", exactText(loop.identify.validation_share)},
           {"model.identify.after", std::to_string(loop.identify.after)},
           {"model.identify.online.every", std::to_string(loop.identify.online.every)},
           {"model.identify.online.forgetting", exactText(loop.identify.online.rls.forgetting)},
-          {"model.identify.online.initial_covariance",
-           exactText(loop.identify.online.rls.initial_covariance)},
-          {"model.identify.online.covariance_bound",
-           exactText(loop.identify.online.rls.covariance_bound)},
           {"clp.perturbation_steps", std::to_string(clp.perturbation_steps)},
           {"clp.mode2_steps", std::to_string(clp.mode2_steps)},
           {"clp.cost", wordOf(clp.cost)},
@@ -281,7 +271,6 @@ std::map<std::string, std::string> structDefaults() {
           {"clp.action", wordOf(clp.action)},
           {"clp.output_penalty", exactText(clp.output_penalty)},
           {"clp.qp.max_iterations", std::to_string(clp.qp.max_iterations)},
-          {"clp.qp.feasibility_tolerance", exactText(clp.qp.feasibility_tolerance)},
           {"actuator.hold_samples", std::to_string(loop.simulation.actuator.hold_samples)},
           {"noise.seed", std::to_string(loop.simulation.noise_seed)},
           {"loop.speedup", exactText(loop.ring.speedup)},

@@ -41,10 +41,10 @@ TEST(StudyFile, IsReadIntoItsStructs) {
 
 TEST(StudyFile, LoopsMayBringChangesOfTheirOwn) {
   const StudyFile study = parseStudy(
-      "loops: [{loop: a, name: on}, {loop: a, name: off, set: {guard.enabled: false}}]\n"
+      "loops: [{loop: a, name: on}, {loop: a, name: off, set: {guard: false}}]\n"
       "against: on\nfitness: {terms: [{index: ise}]}\n",
       "s.yaml");
-  EXPECT_EQ(study.loops[1].set.front().first, "guard.enabled");
+  EXPECT_EQ(study.loops[1].set.front().first, "guard");
   EXPECT_EQ(study.against, "on");
 }
 

@@ -1,4 +1,4 @@
-// An affine law of what is measured: its value on paper, its lag, and what is not finite.
+// An affine law of what is measured: its value on paper, and what is not finite.
 #include "control/affine_law.hpp"
 
 #include <cmath>
@@ -9,47 +9,35 @@ namespace fpc::test_session {
 namespace control_affine_law_test {
 
 /// s follows the load x q_i / 2.6e6, gain 4.
-AffineTerm load(double lag_h = 0.0) { return {0, {1}, {0}, 2.6e6, 4.0, lag_h}; }
+AffineTerm load() { return {0, {1}, {0}, 2.6e6, 4.0}; }
 
 TEST(AffineLaw, AddsGainTimesTheRelativeProduct) {
-  AffineLaw plan({load(), {1, {0}, {}, 50.0, -100.0, 0.0}}, 2, 0.2);
-  const Vector& sum = plan.follow(of({60.0, 2000.0}), of({1950.0}), 0);
+  AffineLaw plan({load(), {1, {0}, {}, 50.0, -100.0}}, 2);
+  const Vector& sum = plan.follow(of({60.0, 2000.0}), of({1950.0}));
   EXPECT_NEAR(sum[0], 4.0 * (2000.0 * 1950.0 / 2.6e6 - 1.0), 1e-12);
   EXPECT_NEAR(sum[1], -100.0 * 0.2, 1e-12);
 }
 
-TEST(AffineLaw, AStepPassesItsLagAsAnExponential) {
-  AffineLaw plan({load(3.0)}, 2, 0.2);
-  EXPECT_EQ(plan.follow(of({55.0, 2000.0}), of({1300.0}), 0)[0], 0.0) << "rests at its first value";
-  for (std::uint32_t k = 1; k <= 15; ++k) plan.follow(of({55.0, 2000.0}), of({2600.0}), k);
-  const double value = plan.follow(of({55.0, 2000.0}), of({2600.0}), 16)[0];
-  EXPECT_NEAR(value, 4.0 * (1.0 - std::exp(-16 * 0.2 / 3.0)), 1e-12);
-  AffineLaw gap({load(3.0)}, 2, 0.2);  // the same in one step over missing samples
-  gap.follow(of({55.0, 2000.0}), of({1300.0}), 0);
-  EXPECT_NEAR(gap.follow(of({55.0, 2000.0}), of({2600.0}), 16)[0], value, 1e-12);
-}
-
 TEST(AffineLaw, WhatIsNotFiniteLeavesItAsItWas) {
-  AffineLaw plan({load()}, 2, 0.2);
-  const double before = plan.follow(of({55.0, 2000.0}), of({2600.0}), 0)[0];
+  AffineLaw plan({load()}, 2);
+  const double before = plan.follow(of({55.0, 2000.0}), of({2600.0}))[0];
   EXPECT_NEAR(before, 4.0, 1e-12);
-  EXPECT_EQ(plan.follow(of({55.0, 2000.0}), of({kNaN}), 1)[0], before);
+  EXPECT_EQ(plan.follow(of({55.0, 2000.0}), of({kNaN}))[0], before);
 }
 
 TEST(AffineLaw, MistakesAreNamed) {
   const auto words = [](AffineTerm term) -> std::string {
     try {
-      AffineLaw law({term}, 2, 0.2);
+      AffineLaw law({term}, 2);
     } catch (const InputError& error) {
       return error.what();
     }
     return "nothing thrown";
   };
-  EXPECT_NE(words({0, {1}, {}, 0.0, 1.0, 0.0}).find("term[0].about"), std::string::npos);
-  EXPECT_NE(words({0, {}, {}, 1.0, 1.0, 0.0}).find("term[0].of"), std::string::npos);
-  EXPECT_NE(words({2, {1}, {}, 1.0, 1.0, 0.0}).find("target"), std::string::npos);
-  EXPECT_NE(words({0, {1}, {}, 1.0, kNaN, 0.0}).find("gain"), std::string::npos);
-  EXPECT_NE(words({0, {1}, {}, 1.0, 1.0, -1.0}).find("lag_h"), std::string::npos);
+  EXPECT_NE(words({0, {1}, {}, 0.0, 1.0}).find("term[0].about"), std::string::npos);
+  EXPECT_NE(words({0, {}, {}, 1.0, 1.0}).find("term[0].of"), std::string::npos);
+  EXPECT_NE(words({2, {1}, {}, 1.0, 1.0}).find("target"), std::string::npos);
+  EXPECT_NE(words({0, {1}, {}, 1.0, kNaN}).find("gain"), std::string::npos);
 }
 
 }  // namespace control_affine_law_test

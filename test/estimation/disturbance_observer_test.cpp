@@ -84,20 +84,6 @@ TEST(DisturbanceObserver, StatedNoiseIsNotTakenForDisturbance) {
   EXPECT_LT(spread(params(0.1, 0.01), 0.1), 0.2 * spread(params(0.0, 0.01), 0.1));
 }
 
-TEST(DisturbanceObserver, AdaptiveLearnsTheNoiseFromItsInnovations) {
-  ObserverParams p = params(0.0, 0.01);
-  p.adaptive = true;
-  Level level(p);
-  std::mt19937_64 engine = seededEngine(8, {1});
-  double y = 0.0;
-  for (int k = 0; k < 4000; ++k) {
-    y = 0.9 * y + 1.0;
-    level.see(y + 0.1 * standardNormal(engine), 0.0);
-  }
-  EXPECT_NEAR(std::sqrt(level.observer.noiseVariance()[0]), 0.1, 0.03);
-  EXPECT_LT(spread(p, 0.1), 0.3 * spread(params(0.0, 0.01), 0.1));
-}
-
 TEST(DisturbanceObserver, ADisturbanceThatChangesIsFollowedInTheEnd) {
   Level level(params(0.1, 0.01));
   double y = 0.0;
@@ -187,12 +173,9 @@ TEST(DisturbanceObserver, MistakesNameTheirKey) {
   };
   EXPECT_NE(errorWith(params(-1.0, 1.0)).find("noise_std"), std::string::npos);
   EXPECT_NE(errorWith(params(1.0, 0.0)).find("disturbance_std"), std::string::npos);
-  ObserverParams p = params(1.0, 1.0);
-  p.adaptation = 1.0;
-  EXPECT_NE(errorWith(p).find("adaptation"), std::string::npos);
   EXPECT_EQ(errorWith(atInput(1.0, 0.0)), "");
   EXPECT_NE(errorWith(atInput(1.0, -1.0)).find("input_std"), std::string::npos);
-  p = atInput(1.0, 1.0);
+  ObserverParams p = atInput(1.0, 1.0);
   p.input_std = Vector::Ones(2);  // two that one output shows
   EXPECT_NE(errorWith(p).find("input_std"), std::string::npos);
 }

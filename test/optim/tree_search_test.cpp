@@ -115,16 +115,6 @@ TEST(TreeSearch, ABudgetGivesTheBestSequenceSoFarAndSaysSo) {
   }
 }
 
-TEST(TreeSearch, ACallerMayStopItOnceThereIsASequence) {
-  std::mt19937_64 generator(8);
-  RandomTree tree(generator, 5, 6, true, false);
-  TreeSearch search(1, 5, {6, false, 0});
-  const TreeResult& cut = search.search(tree, Vector::Zero(1), [] { return true; });
-  EXPECT_EQ(cut.status, TreeStatus::kBudget);
-  EXPECT_TRUE(std::isfinite(cut.cost));
-  EXPECT_EQ(search.search(tree, Vector::Zero(1)).status, TreeStatus::kOptimal);
-}
-
 TEST(TreeSearch, StatesThatAreNotFiniteAreDeadEnds) {
   struct Exploding final : TreeProblem {
     double advance(int, int, int choice, Eigen::Ref<Vector> state) override {

@@ -100,11 +100,11 @@ std::string excitation(Dice& dice, RandomFrame& frame) {
     text += "    - {input: " + u.name + ", signal: " + kind;
     if (kind == "prbs")
       text += ", register_bits: " + std::to_string(dice.whole(2, 10)) +
-              ", clock_steps: " + std::to_string(dice.whole(1, 5));
+              ", clock_s: " + exactText(dice.whole(1, 5) * frame.sample_time_s);
     if (kind == "multi_level") {
       const int shortest = dice.whole(1, 6);
-      text += ", hold_lower_steps: " + std::to_string(shortest) +
-              ", hold_upper_steps: " + std::to_string(shortest + dice.whole(0, 9));
+      text += ", hold_lower_s: " + exactText(shortest * frame.sample_time_s) +
+              ", hold_upper_s: " + exactText((shortest + dice.whole(0, 9)) * frame.sample_time_s);
     }
     if (kind == "steps")
       text += ", schedule: [{time_h: " + exactText(frame.hours(dice.whole(1, frame.samples))) +
@@ -176,12 +176,12 @@ std::string adaptivePi(Dice& dice, RandomFrame&) {
                      ", integral_time_min: " + dice.number(10.0, 30.0) + "}\n" +
                      "  decoupling: " + (dice.chance(0.7) ? "true" : "false") + "\n  model:\n";
   const std::vector<std::string> elements{
-      "output: y_D, input: L, gain: 12.8, time_constant_min: 16.7, dead_time_min: 1",
-      "output: y_D, input: V, gain: -18.9, time_constant_min: 21, dead_time_min: 3",
-      "output: x_B, input: L, gain: 6.6, time_constant_min: 10.9, dead_time_min: 7",
-      "output: x_B, input: V, gain: -19.4, time_constant_min: 14.4, dead_time_min: 3"};
+      "output: y_D, from: L, gain: 12.8, time_constant_min: 16.7, dead_time_min: 1",
+      "output: y_D, from: V, gain: -18.9, time_constant_min: 21, dead_time_min: 3",
+      "output: x_B, from: L, gain: 6.6, time_constant_min: 10.9, dead_time_min: 7",
+      "output: x_B, from: V, gain: -19.4, time_constant_min: 14.4, dead_time_min: 3"};
   for (const auto& element : elements) text += "    - {" + element + "}\n";
-  if (dice.chance(0.5)) text += "  adaptation: {enabled: true, start_steps: 10}\n";
+  if (dice.chance(0.5)) text += "  adaptation: {start_steps: 10}\n";
   return text;
 }
 

@@ -97,7 +97,7 @@ std::string randomStandstill(Dice& dice, const RandomFrame& frame) {
 
 std::string randomGuard(Dice& dice, const RandomFrame& frame, const std::string& pi_keys) {
   if (frame.model.empty() || !dice.chance(0.4)) return "";
-  if (dice.chance(0.2)) return "guard: {enabled: false}\n";
+  if (dice.chance(0.2)) return "guard: false\n";
   const double low = dice.between(0.05, 0.5);
   std::string text = "guard:\n  trust_low: " + Dice::rounded(low) +
                      "\n  trust_high: " + Dice::rounded(low + dice.between(0.1, 0.45)) +
@@ -121,9 +121,8 @@ std::string randomObserver(Dice& dice, const RandomFrame& frame) {
     change.push_back(Dice::rounded(0.01 * widthOf(q) * dice.scale(0.01, 3.0)));
   }
   const auto names = namesOf(frame.outputs);
-  return "  observer: {enabled: true, noise_std: " + byName(names, noise) +
-         ", disturbance_std: " + byName(names, change) +
-         (dice.chance(0.3) ? ", adaptive: true}\n" : "}\n");
+  return "  observer: {noise_std: " + byName(names, noise) +
+         ", disturbance_std: " + byName(names, change) + "}\n";
 }
 
 std::string randomModel(Dice& dice, const RandomFrame& frame) {

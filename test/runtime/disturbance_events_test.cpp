@@ -84,11 +84,11 @@ TEST_F(DisturbanceEvents, AWindowBeyondTheRunIsSaid) {
   const auto said = [](const char* from) {
     const LoopFile loop = readLoop(
         "heated_tank",
-        {{"report.windows", "[{name: late, from_h: " + std::string(from) + ", to_h: 12}]"}});
+        {{"report.windows", "[{name: late, from_s: " + std::string(from) + ", to_s: 43200}]"}});
     return says(summarize(loop, runLoop(loop), 0.0), EventCode::kBeyondRun);
   };
-  EXPECT_TRUE(said("10"));
-  EXPECT_FALSE(said("2"));
+  EXPECT_TRUE(said("36000"));
+  EXPECT_FALSE(said("7200"));
 }
 
 TEST_F(DisturbanceEvents, OffsetsAreCutAgainstTheRecord) {

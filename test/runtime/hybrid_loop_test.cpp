@@ -1,4 +1,4 @@
-// Loops of the hybrid law: sets of inputs, recipes, windows and consumption as people write them,
+// Loops of the hybrid law: lists of inputs, recipes, windows and consumption as people write them,
 // and what is refused.
 #include <cmath>
 
@@ -12,24 +12,10 @@ namespace loop_hybrid_loop_test {
 
 LoopFile read(const Overrides& overrides) { return readLoop("batch_fuzzy_eq45", overrides); }
 
-TEST(HybridLoop, LevelsWithoutTheForbiddenAreTheListOfInputs) {
-  const LoopFile listed = read({});
-  const LoopFile combined = readLoop(
-      "batch_fuzzy_eq45",
-      {{"controller.inputs", "[]"},
-       {"controller.levels", "{kM: [0, 0.01, 0.02, 0.05, 0.1, 1], kC: [0, 1], kH: [1, 0]}"},
-       {"controller.forbidden",
-        "[{kC: 1, kH: 1}, {kC: 0, kH: 0}, {kM: 0, kC: 1}, {kM: 0.01, kC: 1}, {kM: 0.02, kC: 1},"
-        " {kM: 0.05, kC: 1}, {kM: 0.1, kC: 1}]"}});
-  const Matrix& choices = listed.controllerParams<HybridMpcParams>().choices;
-  EXPECT_EQ(combined.controllerParams<HybridMpcParams>().choices, choices);
-  EXPECT_EQ(choices.cols(), 7);
-}
-
 TEST(HybridLoop, ARecipeIsASchedule) {
   const LoopFile loop =
       read({{"setpoint.recipe",
-             "[{T: 30, hold_min: 30}, {T: 50, ramp_h: 1, hold_s: 900}, {T: 20, ramp_min: 15}]"}});
+             "[{T: 30, hold_s: 1800}, {T: 50, ramp_s: 3600, hold_s: 900}, {T: 20, ramp_s: 900}]"}});
   ASSERT_EQ(loop.setpoint.schedule.size(), 3U);
   const double starts[] = {0.0, 0.5, 1.75}, ramps[] = {0.0, 1.0, 0.25}, T[] = {30.0, 50.0, 20.0};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -43,8 +29,8 @@ TEST(HybridLoop, ARecipeIsASchedule) {
 TEST(HybridLoop, WindowsAndConsumptionAreSumsOverTheRecord) {
   const LoopFile loop =
       read({{"sampling.duration_h", "0.5"},
-            {"report.windows", "[{name: w, output: T, from_min: 10, to_min: 20}, {name: v}]"},
-            {"report.windows.1.to_h", "0"}});
+            {"report.windows", "[{name: w, output: T, from_s: 600, to_s: 1200}, {name: v}]"},
+            {"report.windows.1.to_s", "0"}});
   const RunRecord record = runLoop(loop);
   const Summary summary = summarize(loop, record, 0.0);
   ASSERT_EQ(summary.windows.size(), 3U);  // w of T, v of T, v of Tw
@@ -68,19 +54,17 @@ TEST(HybridLoop, MistakesAreNamed) {
   const auto error = [](const std::string& key, const std::string& value) {
     return errorOf([&] { read({{key, value}}); });
   };
-  expectWords(error("controller.inputs", "[]"), {"controller.inputs", "levels"});
+  expectWords(error("controller.inputs", "[]"), {"controller.inputs", "a list"});
   expectWords(error("controller.inputs", "[{kM: 0, kC: 0}]"), {"controller.inputs[0]", "kH"});
   expectWords(error("controller.inputs.1.kM", "0"), {"controller.inputs", "only once"});
   expectWords(error("controller.inputs.0.kM", "2"), {"inputs", "bounds"});
-  expectWords(error("controller.forbidden", "[{}]"), {"controller.forbidden", "leave an input"});
   expectWords(error("controller.cost.switching.0.before", "kX"), {"one of kM, kC, kH"});
   expectWords(error("controller.cost.tracking", "{T: -1}"), {"controller.cost.tracking.T"});
   expectWords(error("controller.node_budget", "20"), {"budget", "28"});
   expectWords(error("actuator.fallback", "{kM: 0.5}"), {"fallback", "controller.inputs"});
   expectWords(error("setpoint.schedule", "[{time_h: 1, T: 30}]"), {"setpoint.recipe", "either"});
-  expectWords(error("setpoint.recipe", "[{T: 30, hold_h: 1, hold_min: 5}]"), {"in one unit"});
-  expectWords(error("report.windows", "[{name: w, from_h: 2, to_h: 1}]"),
-              {"report.windows[0].to_h"});
+  expectWords(error("report.windows", "[{name: w, from_s: 2, to_s: 1}]"),
+              {"report.windows[0].to_s"});
   expectWords(error("report.consumption", "{steps: {kM: 1}}"), {"report.consumption.steps"});
   expectWords(error("model", "{}"), {"model.file", "hybrid_mpc"});
 }

@@ -17,7 +17,7 @@ namespace loop_plausible_session_test {
 LoopFile loopWith(const Overrides& more) {
   Overrides overrides{{"sampling.duration_h", "24"},
                       {"plausibility.signals.x.upper", "3000"},
-                      {"plausibility.hold_samples", "4"},
+                      {"actuator.hold_samples", "4"},
                       {"actuator.fallback.q_r", "300"}};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return readLoop("asp_case1", overrides);

@@ -32,7 +32,7 @@ TEST(RejectedScores, OfASimulatedPlantAreThoseOfWhatWasTrue) {
   const LoopFile loop =
       readLoop("asp_case1_pi_x", {{"sampling.duration_h", "10"},
                                   {"plausibility.signals.x.upper", "3000"},
-                                  {"report.windows", "[{name: w, from_h: 2, to_h: 7}]"}});
+                                  {"report.windows", "[{name: w, from_s: 7200, to_s: 25200}]"}});
   const RunRecord record = recordOf(loop);
   const Summary well = summarize(loop, record, 0.0);
   EXPECT_EQ(well.outputs[kX].rejected, 0U);

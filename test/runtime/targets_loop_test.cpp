@@ -36,7 +36,7 @@ TEST(TargetsLoop, MoreInputsThanOutputsRestAtTheLeastCost) {
 // Of t1 = 4, t2 = 8 both are given up for t4 <= 2.5 of rank 1.
 TEST(TargetsLoop, FewerInputsThanOutputsGiveUpTheLowerRank) {
   for (const bool clp : {true, false}) {
-    const LoopFile loop = readLoop("four_on_two", {{"clp.enabled", clp ? "true" : "false"}});
+    const LoopFile loop = readLoop("four_on_two", clp ? Overrides{} : Overrides{{"clp", "false"}});
     const RunRecord record = runLoop(loop);
     const Vector y = atRest(record);
     EXPECT_LT(y[2], 5.0 + 0.1) << clp;
@@ -58,7 +58,7 @@ TEST(TargetsLoop, AZoneUpsideDownIsAnError) {
 }
 
 TEST(TargetsLoop, WithoutTheSectionNothingChanges) {
-  const LoopFile off = readLoop("tanks_three_pumps", {{"targets.enabled", "false"}});
+  const LoopFile off = readLoop("tanks_three_pumps", {{"targets", "false"}});
   const RunRecord record = runLoop(off);
   EXPECT_EQ(record.samples.back().tracking.setpoint[0], 30.0);
 }

@@ -204,11 +204,10 @@ TEST_F(Guard, MistakesNameTheirKey) {
     EXPECT_NE(error.find(key), std::string::npos) << error;
   };
   names(errorWith([](GuardParams& p) { p.trust_high = 0.1; }), "guard.trust_high");
-  names(errorWith([](GuardParams& p) { p.least_move = 0.0; }), "guard.least_move");
   names(errorWith([](GuardParams& p) { p.return_samples = 0; }), "guard.return_samples");
   names(errorWith([](GuardParams& p) { p.lock_samples = -1; }), "guard.lock_samples");
   names(errorWith([](GuardParams& p) { p.lock_step = 2.0; }), "guard.lock_step");
-  names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "guard.lock_outputs");
+  names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "outputs that the law follows");
 }
 
 }  // namespace control_guard_test

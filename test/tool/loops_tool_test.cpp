@@ -82,7 +82,7 @@ TEST_F(LoopsTool, WhatTheirTextSaysIsWhatIsReadWithTheData) {
 TEST_F(LoopsTool, ALoopThatIsWrongIsListedWithWhatItsTextSays) {
   std::filesystem::create_directory(folder_ / "loop");
   write("loop/mine_wrong.yaml",
-        "extends: asp_case1_clp\ntitle: Mine\nclp: {enabled: false}\nsampling: {nonsense: 1}\n");
+        "extends: asp_case1_clp\ntitle: Mine\nclp: false\nsampling: {nonsense: 1}\n");
   setenv("FMBPC_CONFIG_PATH", folder_.c_str(), 1);
   const auto loops = listed(tool("loops --json mine_wrong"));
   unsetenv("FMBPC_CONFIG_PATH");

@@ -74,7 +74,9 @@ class YamlSection {
   /// size than `names`, no name may be absent. Also accepts a list of names.size() numbers.
   void byName(const std::string& key, Vector& value, const std::vector<std::string>& names,
               Range range = {});
-  YamlSection section(const std::string& key);            ///< an absent key is an empty section
+  YamlSection section(const std::string& key);  ///< an absent key is an empty section
+  /// The same where `KEY: false` takes the section out: it is empty then, and `off` is true.
+  YamlSection sectionOrOff(const std::string& key, bool& off);
   std::vector<YamlSection> list(const std::string& key);  ///< a list of mappings
   std::vector<std::string> unreadKeys() const;
   std::vector<std::string> keys() const;

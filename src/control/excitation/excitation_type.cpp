@@ -1,5 +1,5 @@
-// Controller type excitation: its section of a loop file. Times are given in samples or in seconds
-// that are a whole number of samples.
+// Controller type excitation: its section of a loop file. Times are a whole number of
+// samples.
 #include "control/excitation/excitation.hpp"
 #include "fmbpc/base/option.hpp"
 
@@ -24,26 +24,21 @@ std::int64_t wholeSamples(const YamlSection& section, const std::string& key, do
   return static_cast<std::int64_t>(whole);
 }
 
-/// `STEM_steps` or, instead, `STEM_s`; true if one of them is there.
-bool readSteps(YamlSection& section, const std::string& stem, int& steps, int lower,
-               double sample_time_s) {
-  const std::string in_steps = stem + "_steps", in_seconds = stem + "_s";
-  const bool has_steps = section.has(in_steps), has_seconds = section.has(in_seconds);
-  if (has_steps && has_seconds)
-    section.fail(in_seconds, "either " + in_steps + " or " + in_seconds);
-  section.integer(in_steps, steps, lower);
+/// A time in seconds; true if it is there.
+bool readTime(YamlSection& section, const std::string& key, int& steps, int lower,
+              double sample_time_s) {
   double time_s = 0.0;
-  section.number(in_seconds, time_s, kFiniteNotNegative);
-  if (has_seconds)
-    steps = static_cast<int>(wholeSamples(section, in_seconds, time_s, sample_time_s));
-  if (steps < lower) section.fail(in_seconds, "at least " + std::to_string(lower) + " samples");
-  return has_steps || has_seconds;
+  section.number(key, time_s, kFiniteNotNegative);
+  if (!section.has(key)) return false;
+  steps = static_cast<int>(wholeSamples(section, key, time_s, sample_time_s));
+  if (steps < lower) section.fail(key, "at least " + std::to_string(lower) + " samples");
+  return true;
 }
 
 void readRegister(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
   item.integer("register_bits", signal.register_bits, ShiftRegister::kFewestBits,
                ShiftRegister::kMostBits);
-  readSteps(item, "clock", signal.clock_steps, 1, sample_time_s);
+  readTime(item, "clock_s", signal.clock_steps, 1, sample_time_s);
 }
 
 void readHolds(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
@@ -51,10 +46,10 @@ void readHolds(YamlSection& item, ExcitationSignal& signal, double sample_time_s
   if (item.has("levels") && (item.has("lower") || item.has("upper")))
     item.fail("levels", "either levels or lower and upper");
   if (item.has("levels") && signal.levels.empty()) item.fail("levels", "at least one number");
-  if (!readSteps(item, "hold_lower", signal.hold_lower_steps, 1, sample_time_s))
-    item.fail("hold_lower_steps", "the shortest time of a level (or hold_lower_s)");
-  if (!readSteps(item, "hold_upper", signal.hold_upper_steps, 1, sample_time_s))
-    item.fail("hold_upper_steps", "the longest time of a level (or hold_upper_s)");
+  if (!readTime(item, "hold_lower_s", signal.hold_lower_steps, 1, sample_time_s))
+    item.fail("hold_lower_s", "the shortest time of a level");
+  if (!readTime(item, "hold_upper_s", signal.hold_upper_steps, 1, sample_time_s))
+    item.fail("hold_upper_s", "the longest time of a level");
 }
 
 void readStaircase(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
@@ -92,7 +87,7 @@ ExcitationSignal readSignal(YamlSection& item, const ControllerContext& loop) {
   if (signal.signal == ExcitationKind::kMultiLevel) readHolds(item, signal, sample_time_s);
   if (signal.signal == ExcitationKind::kSteps) readStaircase(item, signal, sample_time_s);
   if (signal.signal != ExcitationKind::kNone)
-    readSteps(item, "start", signal.start_steps, 0, sample_time_s);
+    readTime(item, "start_s", signal.start_steps, 0, sample_time_s);
   item.finish();
   return signal;
 }

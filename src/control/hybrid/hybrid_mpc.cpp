@@ -53,8 +53,6 @@ void HybridMpcParams::validate(Index n_y, Index n_u) const {
   for (const ForbiddenTransition& t : forbidden_transitions)
     require(t.from.size() == n_u && t.to.size() == n_u, "controller.forbidden_transitions",
             "from and to of " + std::to_string(n_u) + " inputs");
-  require(std::isfinite(time_budget_s) && time_budget_s >= 0.0, "controller.time_budget_s",
-          "a time >= 0");
   TreeSearchParams{horizon_blocks, false, node_budget}.validate(static_cast<int>(choices.cols()));
 }
 
@@ -87,8 +85,6 @@ HybridMpc::HybridMpc(HybridMpcParams params, InputLimits limits, PlantInfo plant
   for (const SignalInfo& input : plant_.inputs)
     stuck_.push_back(input.name + " is not where it was sent");
   signals_ = {{"choice", 0.0}, {"search_cost", 0.0}, {"search_nodes", 0.0}};
-  if (params_.time_budget_s > 0.0)
-    stop_ = [this] { return std::chrono::steady_clock::now() > deadline_; };
 }
 
 HybridMpc::~HybridMpc() = default;
@@ -116,8 +112,6 @@ bool HybridMpc::boundsByReach() const {
 
 TreeProblem& HybridMpc::problem() { return *evolution_; }
 
-const TreeResult& HybridMpc::decision() const { return decision_; }
-
 bool HybridMpc::mayBeSent(VectorRef input) const { return params_.mayBeSent(input); }
 
 void HybridMpc::makeSendable(Eigen::Ref<Vector> input) const {
@@ -132,11 +126,7 @@ void HybridMpc::reset(const Measurement& /*start*/) {
 
 const TreeResult& HybridMpc::search(VectorRef input_before, VectorRef disturbances) {
   evolution_->start(input_before, disturbances, reference_);
-  if (stop_)
-    deadline_ = std::chrono::steady_clock::now() +
-                std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                    std::chrono::duration<double>(params_.time_budget_s));
-  decision_ = tree_->search(*evolution_, state_, stop_);
+  decision_ = tree_->search(*evolution_, state_);
   return decision_;
 }
 

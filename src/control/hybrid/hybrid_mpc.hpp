@@ -2,7 +2,6 @@
 // a few positions: the best sequence of input vectors, by reachability.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -52,7 +51,6 @@ struct HybridMpcParams {
   std::vector<TravelTerm> travel;
   BranchBound bound{BranchBound::kReach};
   std::uint64_t node_budget{};  ///< 0: none
-  double time_budget_s{};       ///< 0: none; not reproducible
   /// @throws InputError naming the field: sizes, repeated choices, negative costs, indices.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
   void validateLimits(const InputLimits& limits) const;  ///< @throws InputError: choices inside
@@ -89,8 +87,6 @@ class HybridMpc final : public Controller {
   bool mayBeSent(VectorRef input) const override;
   void makeSendable(Eigen::Ref<Vector> input) const override;
 
-  /// Of the last decision.
-  const TreeResult& decision() const;
   /// Decides at once from these values, whatever the block: for tests and benchmarks. reference:
   /// n_y, Z H_Z columns.
   const TreeResult& decide(VectorRef outputs, VectorRef input_before, VectorRef disturbances,
@@ -117,8 +113,6 @@ class HybridMpc final : public Controller {
   int samples_left_{0};      // of the block
   Eigen::Index choice_{0};
   std::vector<std::string> stuck_;  // what to say of each input that is not where it was sent
-  std::function<bool()> stop_;      // the time budget
-  std::chrono::steady_clock::time_point deadline_;
   std::vector<std::pair<std::string, double>> signals_;
 };
 

@@ -14,8 +14,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::size_t kMostInputs = 10000;
-
 /// Values by name; NaN where a name is absent: any value.
 Vector readPattern(YamlSection& item, const std::vector<std::string>& names) {
   Vector values = Vector::Constant(countOf(names), std::nan(""));
@@ -34,45 +32,12 @@ std::vector<Vector> readList(YamlSection& section, const std::vector<std::string
   return inputs;
 }
 
-/// Every combination of the levels of each input, the last one changing fastest.
-std::vector<Vector> readLevels(YamlSection& section, const std::vector<std::string>& names) {
-  YamlSection levels = section.section("levels");
-  std::vector<Vector> inputs(1, Vector::Zero(countOf(names)));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::vector<double> values;
-    levels.numbers(names[i], values, kFinite);
-    if (values.empty() && section.has("levels"))
-      levels.fail(names[i], "a list of the values that it takes");
-    std::vector<Vector> next;
-    for (const Vector& input : inputs)
-      for (const double value : values) {
-        next.push_back(input);
-        next.back()[static_cast<Index>(i)] = value;
-      }
-    inputs = std::move(next);
-    if (inputs.size() > kMostInputs) section.fail("levels", "fewer combinations");
-  }
-  levels.finish();
-  return inputs;
-}
-
 Matrix readChoices(YamlSection& section, const std::vector<std::string>& names) {
-  std::vector<Vector> inputs = readList(section, names);
-  const std::vector<Vector> combined = readLevels(section, names);
-  if (inputs.empty() == combined.empty())
-    section.fail("inputs", "either a list of input vectors, or levels of each input");
-  if (inputs.empty()) inputs = combined;
-  std::vector<Vector> forbidden;
-  for (auto& item : section.list("forbidden")) forbidden.push_back(readPattern(item, names));
+  const std::vector<Vector> inputs = readList(section, names);
+  if (inputs.empty()) section.fail("inputs", "a list of input vectors");
   Matrix choices(countOf(names), static_cast<Index>(inputs.size()));
-  Index kept = 0;
-  for (const Vector& input : inputs) {
-    bool allowed = true;
-    for (const Vector& pattern : forbidden) allowed = allowed && !matches(pattern, input);
-    if (allowed) choices.col(kept++) = input;
-  }
-  if (kept == 0) section.fail("forbidden", "patterns that leave an input");
-  return choices.leftCols(kept);
+  for (std::size_t i = 0; i < inputs.size(); ++i) choices.col(static_cast<Index>(i)) = inputs[i];
+  return choices;
 }
 
 void readTransitions(YamlSection& section, const std::vector<std::string>& names,
@@ -128,7 +93,6 @@ HybridMpcParams readHybridMpc(YamlSection& section, const ControllerContext& loo
   readCost(section, params, loop);
   readOption(section, "bound", params.bound);
   section.seed("node_budget", params.node_budget);
-  section.number("time_budget_s", params.time_budget_s, kFiniteNotNegative);
   checked(section, [&] {
     params.validate(loop.outputCount(), loop.inputCount());
     params.validateLimits(loop.limits);

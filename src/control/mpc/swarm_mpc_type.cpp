@@ -10,11 +10,6 @@ SwarmParams readSwarm(YamlSection& controller) {
   YamlSection section = controller.section("swarm");
   section.integer("particles", params.particles, 1, 100000);
   section.integer("iterations", params.iterations, 0, 100000);
-  section.number("inertia_start", params.inertia_start, kFiniteNotNegative);
-  section.number("inertia_end", params.inertia_end, kFiniteNotNegative);
-  section.number("cognitive", params.cognitive, kFiniteNotNegative);
-  section.number("social", params.social, kFiniteNotNegative);
-  section.number("speed_upper", params.speed_upper, {0.0, 1.0, true});
   section.seed("seed", params.seed);
   section.finish();
   return params;

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "control/pi/decoupling.hpp"
-#include "control/pi/tuning.hpp"
 
 namespace fpc {
 namespace {
@@ -64,13 +63,8 @@ AdaptivePi::AdaptivePi(const AdaptivePiParams& params, InputLimits limits, Plant
   if (params.decoupling) s.decoupling.emplace(params.model, s.dt);
   for (const std::size_t i : kLoops) {
     const AdaptiveLoop& loop = params.loops[i];
-    PiTuning tuning{loop.kp, loop.integral_time_min};
-    if (params.tuning == PiTuningRule::kImc)
-      tuning = imcTuning(params.model[i][i], loop.imc_time_constant_min);
-    if (params.tuning == PiTuningRule::kPso)
-      tuning = swarmTuning(params.model[i][i], TuningCost::kStepTimes);
-    s.loops[i].kp = s.loops[i].kp_model = tuning.kp;
-    s.loops[i].ti = tuning.integral_time_min;
+    s.loops[i].kp = s.loops[i].kp_model = loop.kp;
+    s.loops[i].ti = loop.integral_time_min;
     if (params.adaptation.enabled)
       s.estimators.emplace_back(params.model[i], s.dt, params.adaptation.estimator);
   }
@@ -285,7 +279,6 @@ const std::vector<std::pair<std::string, double>>& AdaptivePi::signals() const {
   return state_->signals;
 }
 double AdaptivePi::kp(std::size_t loop) const { return state_->loops[loop].kp; }
-double AdaptivePi::integralTime(std::size_t loop) const { return state_->loops[loop].ti; }
 double AdaptivePi::gainInUse(std::size_t output, std::size_t input) const {
   return state_->in_use[output][input];
 }

@@ -18,9 +18,8 @@ namespace fpc {
 /// integral counts the present error (backward Euler).
 struct AdaptiveLoop {
   int input{}, output{};
-  double kp{};                         ///< input units per output unit; tuning given
-  double integral_time_min{};          ///< Ti > 0; tuning given
-  double imc_time_constant_min{10.0};  ///< lambda, of the closed loop asked for; tuning imc
+  double kp{};                 ///< input units per output unit
+  double integral_time_min{};  ///< Ti > 0
 };
 
 /// When, and how far, the loops may be retuned.
@@ -36,16 +35,10 @@ struct AdaptationParams {
   void validate() const;        ///< @throws InputError naming the field
 };
 
-/// Where the first gains come from: the loop file, or, at construction, the model by internal model
-/// control or by a particle swarm.
-enum class PiTuningRule { kGiven, kImc, kPso };
-inline std::vector<std::string> wordsOf(PiTuningRule) { return {"given", "imc", "pso"}; }
-
 struct AdaptivePiParams {
   std::array<AdaptiveLoop, 2> loops;
   FopdtMatrix model{};  ///< [loop of the output][loop of the input], minutes
   bool decoupling{true};
-  PiTuningRule tuning{PiTuningRule::kGiven};
   AdaptationParams adaptation;
   /// @throws InputError naming the field.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
@@ -68,7 +61,6 @@ class AdaptivePi final : public Controller {
   const std::vector<std::pair<std::string, double>>& signals() const override;
 
   double kp(std::size_t loop) const;
-  double integralTime(std::size_t loop) const;  ///< min
   double gainInUse(std::size_t output, std::size_t input) const;
   const GainEstimator& estimator(std::size_t output) const;
 

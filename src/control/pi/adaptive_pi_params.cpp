@@ -7,12 +7,9 @@
 namespace fpc {
 namespace {
 
-void validateLoop(const AdaptiveLoop& loop, PiTuningRule tuning, const std::string& key) {
+void validateLoop(const AdaptiveLoop& loop, const std::string& key) {
   require(loop.input >= 0 && loop.input < 2, key + "input", "one of the plant's inputs");
   require(loop.output >= 0 && loop.output < 2, key + "output", "one of the plant's outputs");
-  require(tuning != PiTuningRule::kImc || loop.imc_time_constant_min > 0.0,
-          key + "imc_time_constant_min", "a time > 0");
-  if (tuning != PiTuningRule::kGiven) return;
   require(std::isfinite(loop.kp), key + "kp", "a finite number");
   require(std::isfinite(loop.integral_time_min) && loop.integral_time_min > 0.0,
           key + "integral_time_min", "a time > 0");
@@ -32,10 +29,10 @@ void AdaptationParams::validate() const {
 void AdaptivePiParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   require(n_y == 2 && n_u == 2, "controller.type adaptive_pi", "a plant of two inputs and outputs");
   for (std::size_t i = 0; i < 2; ++i)
-    validateLoop(loops[i], tuning, "controller.loops[" + std::to_string(i) + "].");
+    validateLoop(loops[i], "controller.loops[" + std::to_string(i) + "].");
   require(loops[0].input != loops[1].input, "controller.loops", "two different inputs");
   require(loops[0].output != loops[1].output, "controller.loops", "two different outputs");
-  if (decoupling || adaptation.enabled || tuning != PiTuningRule::kGiven)
+  if (decoupling || adaptation.enabled)
     for (const auto& row : model)
       for (const Fopdt& element : row) element.validate("controller.model: ");
   adaptation.validate();

@@ -3,7 +3,6 @@
 
 #include "control/pi/adaptive_pi.hpp"
 #include "control/pi/decoupling.hpp"
-#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/registry.hpp"
 
 namespace fpc {
@@ -18,11 +17,9 @@ void readLoops(YamlSection& section, AdaptivePiParams& params, const ControllerC
     YamlSection& item = items[i];
     loop.input = indexByName(item, "input", context.inputs());
     loop.output = indexByName(item, "output", context.outputs());
-    if (params.tuning == PiTuningRule::kGiven)
-      for (const char* key : {"kp", "integral_time_min"}) need(item, key, "a number");
+    for (const char* key : {"kp", "integral_time_min"}) need(item, key, "a number");
     item.number("kp", loop.kp, kFinite);
     item.number("integral_time_min", loop.integral_time_min, kFinitePositive);
-    item.number("imc_time_constant_min", loop.imc_time_constant_min, kFinitePositive);
     item.finish();
   }
 }
@@ -36,7 +33,7 @@ void readElements(YamlSection& section, AdaptivePiParams& params,
                   const ControllerContext& context) {
   for (auto& item : section.list("model")) {
     const int output = indexByName(item, "output", context.outputs());
-    const int input = indexByName(item, "input", context.inputs());
+    const int input = indexByName(item, "from", context.inputs());
     Fopdt& element = params.model[loopOf(params, output, &AdaptiveLoop::output)]
                                  [loopOf(params, input, &AdaptiveLoop::input)];
     if (element.gain != 0.0) item.fail("output", "every pair of output and input only once");
@@ -51,8 +48,7 @@ void readElements(YamlSection& section, AdaptivePiParams& params,
 /// An element that nobody wrote would be told as one whose gain is 0.
 void requireElements(const YamlSection& section, const AdaptivePiParams& params,
                      const ControllerContext& context) {
-  const bool needed =
-      params.decoupling || params.adaptation.enabled || params.tuning != PiTuningRule::kGiven;
+  const bool needed = params.decoupling || params.adaptation.enabled;
   const bool paired = params.loops[0].input != params.loops[1].input &&
                       params.loops[0].output != params.loops[1].output;
   if (!needed || !paired) return;
@@ -67,18 +63,11 @@ void requireElements(const YamlSection& section, const AdaptivePiParams& params,
 }
 
 void readAdaptation(YamlSection& section, AdaptationParams& params) {
-  YamlSection item = section.section("adaptation");
-  item.boolean("enabled", params.enabled);
+  bool off = false;
+  YamlSection item = section.sectionOrOff("adaptation", off);
+  params.enabled = section.has("adaptation") && !off;
   item.number("forgetting", params.estimator.forgetting, {0.0, 1.0, true});
-  item.number("initial_covariance", params.estimator.initial_covariance, kFinitePositive);
-  item.number("covariance_bound", params.estimator.covariance_bound, kFinitePositive);
-  item.boolean("bias", params.estimator.bias);
-  item.number("excitation_lower", params.estimator.excitation_lower, kFiniteNotNegative);
   item.integer("start_steps", params.start_steps, 0);
-  item.number("change_upper", params.change_upper, {0.0, 1.0, true});
-  item.number("ratio_upper", params.ratio_upper, {1.0, kLargest, true});
-  item.number("deviation_upper", params.deviation_upper, kFinitePositive);
-  item.integer("refused_steps", params.refused_steps, 1);
   checked(item, [&] { params.validate(); });
   item.finish();
 }
@@ -87,7 +76,6 @@ AdaptivePiParams readAdaptivePi(YamlSection& section, const ControllerContext& c
   AdaptivePiParams params;
   if (context.outputCount() != 2 || context.inputCount() != 2)
     section.fail("type", "a plant of two inputs and two outputs for adaptive_pi");
-  readOption(section, "tuning", params.tuning);
   readLoops(section, params, context);
   section.boolean("decoupling", params.decoupling);
   readElements(section, params, context);

@@ -31,8 +31,6 @@ void readOutput(YamlSection& section, const SignalInfo& about, TargetOutput& out
     section.fail("upper", "a limit not below lower, " + exactText(output.lower));
   section.integer("rank", output.rank, 1, kMostRanks);
   section.boolean("setpoint", output.setpoint);
-  output.setpoint_rank = output.rank;
-  section.integer("setpoint_rank", output.setpoint_rank, 1, kMostRanks);
   output.unit = defaultUnit(output, about);
   section.number("unit", output.unit, kFinitePositive);
   section.number("price", output.price, kFinite);
@@ -58,7 +56,6 @@ void TargetParams::validate(const PlantInfo& plant, const InputLimits& limits) c
   require(countOf(outputs) == countOf(plant.outputs), "targets.outputs", "one entry per output");
   require(countOf(inputs) == limits.lower.size(), "targets.inputs", "one entry per input");
   require(std::isfinite(band) && band >= 0.0, "targets.band", "a finite number >= 0");
-  require(iterations >= 1, "targets.iterations", "an integer >= 1");
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string field = "targets.outputs." + plant.outputs[i].name;
     require(outputs[i].lower <= outputs[i].upper, field + ".upper", "a limit not below lower");
@@ -76,8 +73,7 @@ void TargetParams::validate(const PlantInfo& plant, const InputLimits& limits) c
 int TargetParams::lastRank() const {
   int last = 1;
   for (const TargetOutput& output : outputs) {
-    if (output.hasZone()) last = std::max(last, output.rank);
-    if (output.setpoint) last = std::max(last, output.setpoint_rank);
+    if (output.hasZone() || output.setpoint) last = std::max(last, output.rank);
   }
   for (const TargetInput& input : inputs) last = std::max(last, input.rank);
   return last;
@@ -104,7 +100,6 @@ TargetParams readTargetParams(YamlSection& section, const ControllerContext& loo
   }
   inputs.finish();
   section.number("band", params.band, kFiniteNotNegative);
-  section.integer("iterations", params.iterations, 1, 100);
   readObserver(section, params.observer, loop, ObserverKey::kAlways);
   return params;
 }

@@ -119,7 +119,7 @@ struct TargetLayer::Workspace {
     for (Index i = 0; i < n_y; ++i) {
       const TargetOutput& output = params.outputs[at(i)];
       if (output.hasZone()) ask(Ask::kZone, i, output.rank, ranks);
-      if (output.setpoint) ask(Ask::kSetpoint, i, output.setpoint_rank, ranks);
+      if (output.setpoint) ask(Ask::kSetpoint, i, output.rank, ranks);
     }
     for (Index j = 0; j < n_u; ++j)
       if (params.inputs[at(j)].rank > 0) ask(Ask::kRest, j, params.inputs[at(j)].rank, ranks);

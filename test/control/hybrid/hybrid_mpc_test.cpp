@@ -228,7 +228,6 @@ TEST(HybridMpc, EachParameterIsChecked) {
   refused([](HybridMpcParams& p) { p.switching[0].after = 3; });
   refused([](HybridMpcParams& p) { p.travel[0].gate = 3; });
   refused([](HybridMpcParams& p) { p.forbidden_transitions.emplace_back(); });
-  refused([](HybridMpcParams& p) { p.time_budget_s = -1.0; });
 }
 
 }  // namespace control_hybrid_hybrid_mpc_test

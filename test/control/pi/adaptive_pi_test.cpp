@@ -125,17 +125,5 @@ TEST(AdaptivePi, RefusesWhatItCannotDo) {
   EXPECT_THROW(AdaptiveColumn column(params), InputError);
 }
 
-TEST(AdaptivePi, CanTuneItselfByRuleOrBySwarm) {
-  AdaptivePiParams params = adaptiveParams();
-  params.tuning = PiTuningRule::kImc;
-  params.loops[0].imc_time_constant_min = 3.9;
-  AdaptiveColumn by_rule(params);
-  EXPECT_NEAR(by_rule.law.kp(0), 0.3054, 5e-4);
-  params.tuning = PiTuningRule::kPso;
-  AdaptiveColumn by_swarm(params);
-  EXPECT_NEAR(by_swarm.law.kp(0), 0.6345, 0.02);
-  EXPECT_NEAR(by_swarm.law.integralTime(0), 20.9, 1.0);
-}
-
 }  // namespace control_pi_adaptive_pi_test
 }  // namespace fpc

@@ -1,0 +1,117 @@
+#include "config/gone_keys.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "base/split.hpp"
+#include "base/yaml_node.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+/// Key, and its successor; `*` is any name. Keys of a list stand below it, without a number.
+constexpr std::pair<const char*, const char*> kGone[] = {
+    {"clp.enabled", "'clp: false' to take the section out"},
+    {"guard.enabled", "'guard: false' to take the section out"},
+    {"plausibility.enabled", "'plausibility: false' to take the section out"},
+    {"standstill.enabled", "'standstill: false' to take the section out"},
+    {"targets.enabled", "'targets: false' to take the section out"},
+    {"controller.observer.enabled", "'controller.observer: false' to take the section out"},
+    {"controller.adaptation.enabled", "'controller.adaptation: {}', or false to take it out"},
+    {"model.identify.online.enabled", "'model.identify.online: {}', or false to take it out"},
+    {"controller.swarm.inertia_start", "no key: it is 0.9"},
+    {"controller.swarm.inertia_end", "no key: it is 0.4"},
+    {"controller.swarm.cognitive", "no key: it is 1.8"},
+    {"controller.swarm.social", "no key: it is 1.8"},
+    {"controller.swarm.speed_upper", "no key: it is 0.5"},
+    {"guard.least_move", "no key: it is 0.25"},
+    {"guard.lock_release", "no key: it is 250"},
+    {"guard.lock_outputs", "no key: outputs with a weight count"},
+    {"guard.swing_release", "no key: it is 250"},
+    {"standstill.others_change", "no key: it is 0.1"},
+    {"standstill.noise_std", "noise.std or sensors.NAME.noise_std"},
+    {"standstill.fallback_plan.lag_h", "no key: nothing lags"},
+    {"model.identify.online.initial_covariance", "no key: it is 1"},
+    {"model.identify.online.covariance_bound", "no key: it is 100"},
+    {"controller.adaptation.initial_covariance", "no key: it is 100"},
+    {"controller.adaptation.covariance_bound", "no key: it is 10000"},
+    {"controller.adaptation.bias", "no key: it is true"},
+    {"controller.adaptation.excitation_lower", "no key: it is 0"},
+    {"controller.adaptation.change_upper", "no key: it is 0.1"},
+    {"controller.adaptation.ratio_upper", "no key: it is 2"},
+    {"controller.adaptation.deviation_upper", "no key: it is 0.1"},
+    {"controller.adaptation.refused_steps", "no key: it is 60"},
+    {"controller.tuning", "kp and integral_time_min in controller.loops; fmbpc tune finds them"},
+    {"controller.loops.imc_time_constant_min", "kp and integral_time_min"},
+    {"clp.qp.feasibility_tolerance", "no key: it is 1e-10"},
+    {"controller.transfer_decay", "no key: it is 0.9"},
+    {"controller.disturbance_nominal", "disturbance.nominal"},
+    {"controller.observer.adaptive", "controller.observer.noise_std"},
+    {"controller.observer.adaptation", "controller.observer.noise_std"},
+    {"targets.observer.adaptive", "targets.observer.noise_std"},
+    {"targets.observer.adaptation", "targets.observer.noise_std"},
+    {"targets.iterations", "no key: it is 5"},
+    {"targets.outputs.*.setpoint_rank", "targets.outputs.NAME.rank"},
+    {"candidate.horizon", "no key: it is 20"},
+    {"candidate.confidence", "no key: it is 0.99"},
+    {"candidate.step_samples", "no key: it is 50"},
+    {"controller.levels", "controller.inputs with every allowed vector"},
+    {"controller.forbidden", "controller.inputs with every allowed vector"},
+    {"controller.time_budget_s", "controller.node_budget"},
+    {"plant.frame_id", "plant.name"},
+    {"loop.optimizer_timeout_s", "no key: it is 1"},
+    {"loop.commands_per_s", "no key: it is 20"},
+    {"plausibility.stuck_tolerance", "no key: it is 0.02"},
+    {"plausibility.hold_samples", "actuator.hold_samples"},
+    {"tf.frames.*.x", "position: [x, y, z]"},
+    {"tf.frames.*.y", "position: [x, y, z]"},
+    {"tf.frames.*.z", "position: [x, y, z]"},
+    {"controller.model.input", "from"},
+    {"report.title", "title"},
+    {"setpoint.recipe.ramp_min", "ramp_s"},
+    {"setpoint.recipe.ramp_h", "ramp_s"},
+    {"setpoint.recipe.hold_min", "hold_s"},
+    {"setpoint.recipe.hold_h", "hold_s"},
+    {"report.windows.from_min", "from_s"},
+    {"report.windows.from_h", "from_s"},
+    {"report.windows.to_min", "to_s"},
+    {"report.windows.to_h", "to_s"},
+    {"controller.signals.clock_steps", "clock_s"},
+    {"controller.signals.hold_lower_steps", "hold_lower_s"},
+    {"controller.signals.hold_upper_steps", "hold_upper_s"},
+    {"controller.signals.start_steps", "start_s"}};
+
+/// Paths of the mappings at the parts but the last, which hold the last one.
+void findIn(const YAML::Node& node, const std::vector<std::string>& parts, std::size_t index,
+            const std::string& place, std::vector<std::string>& found) {
+  if (node.IsSequence())
+    for (std::size_t i = 0; i < node.size(); ++i)
+      findIn(node[i], parts, index, place + "[" + std::to_string(i) + "]", found);
+  if (!node.IsMap()) return;
+  for (const auto& entry : node) {
+    const std::string key = entry.first.Scalar();
+    if (key != parts[index] && parts[index] != "*") continue;
+    if (index + 1 == parts.size())
+      found.push_back(place);
+    else
+      findIn(entry.second, parts, index + 1, place + "." + key, found);
+  }
+}
+
+}  // namespace
+
+void explainGoneKeys(const YamlSection& root, const std::string& error) {
+  for (const auto& [key, instead] : kGone) {
+    const auto parts = split(key, '.');
+    if (!root.has(parts[0])) continue;
+    std::vector<std::string> found;
+    findIn(root.raw(parts[0]), parts, 1, parts[0], found);
+    for (const auto& place : found)
+      if (error.find(place) != std::string::npos)
+        throw InputError(root.where(place + "." + parts.back()) + ": the key went; expected " +
+                         instead);
+  }
+}
+
+}  // namespace fpc
