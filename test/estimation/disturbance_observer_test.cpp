@@ -187,7 +187,10 @@ TEST(DisturbanceObserver, MistakesNameTheirKey) {
   };
   EXPECT_NE(errorWith(params(-1.0, 1.0)).find("noise_std"), std::string::npos);
   EXPECT_NE(errorWith(params(1.0, 0.0)).find("disturbance_std"), std::string::npos);
-  ObserverParams p = params(1.0, 1.0);
+  ObserverParams p = params(1.0, 0.0);
+  p.estimated = {{"load", 1.0, 0.1}};
+  EXPECT_EQ(errorWith(p), "");
+  p = params(1.0, 1.0);
   p.adaptation = 1.0;
   EXPECT_NE(errorWith(p).find("adaptation"), std::string::npos);
   EXPECT_EQ(errorWith(atInput(1.0, 0.0)), "");

@@ -216,7 +216,7 @@ ProcessModels lagsOf(const CommissioningBrief& brief, ProcessKind kind,
     fit.ensemble.push_back({heat.element, inlet.element});
     fit.ensemble.back().front().gain *= part;
   }
-  return fpc::modelsOf(names, {fit}, static_cast<int>(parts.size()));
+  return fpc::modelsOf(names, {fit}, static_cast<int>(parts.size()), {true});
 }
 
 Design designed(const CommissioningBrief& brief, const std::string& folder,

@@ -393,7 +393,7 @@ class Designer {
       if (held) ++next;
       noise[i] = std::max(noise_[i], 1e-4 * outline_.y_scale[i]);
       walk[i] = std::pow(10.0, x[1]) * std::max(fit.one_step, 1e-4 * outline_.y_scale[i]) *
-                loadShare(models_.model, i);
+                loadUnit(i);
     }
     for (Index j = 0; j < n_u; ++j) {
       move[j] = std::pow(10.0, x[0]) * params_.movement / (brief_.move[j] * brief_.move[j]);
@@ -410,7 +410,17 @@ class Designer {
       c << ", weight_input: " << mapOf(plant.inputs, pull)
         << ", input_target: " << mapOf(plant.inputs, modelRest(models_.fits, n_u).inputs);
     c << ", realisation: observer, observer: {noise_std: " << mapOf(plant.outputs, noise)
-      << ", disturbance_std: " << mapOf(plant.outputs, walk) << "}}";
+      << ", disturbance_std: 0, estimated: {";
+    const std::vector<bool> counted = brief_.counted();
+    const char* comma = "";
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      if (!counted[i]) continue;
+      const std::string text = exactText(walk[static_cast<Index>(i)]);
+      c << comma << loadName(plant.outputs[i].name) << ": {std: " << text << ", walk_std: " << text
+        << "}";
+      comma = ", ";
+    }
+    c << "}}}";
     return rewritten(brief_, "law",
                      {{"model", "{file: '" + model_file_ + "'}"},
                       {"controller", c.str()},
@@ -422,19 +432,11 @@ class Designer {
 
   // ---- judging
 
-  /// What a constant load of the model's equation is divided by once the output rests. Of an
-  /// integrator: once the settling time is over.
-  double loadShare(const TsModel& model, Index output) const {
-    double sum = 1.0, slope = 0.0;  // A(1) of A = 1 - sum a_i q^i, and A / (1 - q) at 1
-    const OutputModel& submodel = model.submodels[static_cast<std::size_t>(output)];
-    for (std::size_t r = 0; r < submodel.regressors.size(); ++r) {
-      if (submodel.regressors[r].kind != SignalKind::kOutput) continue;
-      const double a = submodel.rules.front().coefficients[static_cast<Index>(r)];
-      sum -= a;
-      slope += (submodel.regressors[r].lag + 1) * a;
-    }
-    const double Ts = brief_.loop.plant_info.sample_time_s;
-    return std::max(std::abs(sum), std::abs(slope) * Ts / outline_.settling);
+  /// Of the models' loads, for a shift of the output by 1; of an integrator: per settling time.
+  double loadUnit(Index output) const {
+    const bool per_hour =
+        models_.fits[static_cast<std::size_t>(output)].kind == ProcessKind::kIntegrating;
+    return per_hour ? 3600.0 / outline_.settling : 1.0;
   }
 
   /// The loop on one model, asked for steps of all that is held, then for loads.
@@ -457,10 +459,9 @@ class Designer {
     loop.setpoint.schedule.push_back({at(stretch++), rest, 0.0});
     for (Index i = 0; i < rest.size(); ++i) {
       if (!brief_.held[static_cast<std::size_t>(i)]) continue;
-      const double load = outline_.load[i] * loadShare(model, i);
       Command command;
-      command.name = {"load/" + brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name};
-      command.value = {load};
+      command.name = {loadName(brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name)};
+      command.value = {outline_.load[i] * loadUnit(i)};
       command.mode = CommandMode::kOffset;
       loop.simulation.disturbance_commands.push_back({at(stretch++), command});
     }
@@ -766,7 +767,7 @@ LoopFile onModel(const LoopFile& loop, const TsModel& model, const LinearPoint& 
   sim.parameters.clear();
   sim.outputs = namesOf(model.outputs);
   sim.output_delay_s.clear();
-  sim.measured_disturbances = namesOf(model.disturbances);
+  sim.measured_disturbances = namesOf(loop.plant_info.disturbances);
   sim.instruments = {};
   sim.actuator.drives.clear();
   sim.disturbance = {};
