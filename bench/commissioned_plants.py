@@ -22,13 +22,16 @@ CASES = {
                     "brief": {"limits": {"T": [20, 60]}, "moves": {"heat": 1}, "hold": {"T": 40}, "plant_time_h": 12}},
     "jacketed_vessel": {"loop": "jacketed_vessel", "slower": (3, 6), "noise": {"T": 0.05},
                         "brief": {"limits": {"T": [25, 60]}, "moves": {"T_jacket": 2}, "hold": {"T": 38}, "plant_time_h": 60}},
-    "surge_tank": {"loop": "surge_tank_steps_pi", "slower": (3, 6), "noise": {"H": 0.0005}, "start": {"H": 0.2},
+    "surge_tank": {"loop": "surge_tank_steps_pi", "slower": (3, 6), "noise": {"H": 0.0005},
                    "brief": {"limits": {"H": [0.1, 0.35]}, "moves": {"I": 0.0003}, "hold": {"H": 0.2}, "plant_time_h": 0.3}},
     "reactor": {"loop": "cstr_small_steps_pi", "slower": (3, 3), "noise": {"CA": 0.0003},
                 "brief": {"limits": {"CA": [0.06, 0.14]}, "moves": {"q_c": 2}, "hold": {"CA": 0.1}, "plant_time_h": 4}},
     "two_input_reactor": {"loop": "mimo_cstr_steps_pi", "slower": (3, 6), "noise": {"Ca": 0.0005, "T": 0.1},
                           "brief": {"limits": {"Ca": [0.05, 0.16], "T": [425, 450]}, "moves": {"q": 2, "qc": 2}, "hold": {"Ca": 0.1, "T": 438.54},
-                                    "plant_time_h": 2}},
+                                    "plant_time_h": 2},
+                          # as shipped it goes far beyond these limits
+                          "plant": {"setpoint": {"schedule": [{"time_h": 0.5, "T": 442}, {"time_h": 1.2, "Ca": 0.085}, {"time_h": 2, "T": 436},
+                                                              {"time_h": 2.7, "Ca": 0.11}]}}},
     "sludge": {"loop": "asp_case1_pi_x", "slower": (3, 3), "noise": {"x": 5, "s": 2},
                "brief": {"limits": {"x": [1000, 3000], "s": [0, 300]}, "moves": {"q_r": 60}, "hold": {"x": 2000}, "plant_time_h": 400}},
 }
@@ -53,7 +56,7 @@ def slower(controller, by):
 
 def commissioned(name, case, folder):
     shipped = yaml.safe_load(fmbpc("resolve", case["loop"]))
-    noisy = {"extends": case["loop"], "noise": {"std": case["noise"], "seed": 1}}
+    noisy = {"extends": case["loop"], "noise": {"std": case["noise"], "seed": 1}, **case.get("plant", {})}
     present = {**noisy, "title": f"{name}, slow PI", "controller": slower(shipped["controller"], case["slower"])}
     folder.mkdir(parents=True, exist_ok=True)
     for file, content in (("present", present), ("shipped", {**noisy, "title": f"{name}, PI that ships"}),

@@ -38,6 +38,7 @@ constexpr int kMostRounds = 3;                        // of a search, behind its
 constexpr double kMostPresent = 10.0;  // sensitivity that a control which holds a plant may have
 constexpr double kWeakWeight = 0.3;    // of the square of a weak direction's gain
 constexpr double kZoneWeight = 0.01;   // of an output that may float
+constexpr double kWorth = 0.9;         // of what the PI costs: above it a law is not worth it
 constexpr const char* kNeither = "neither is offered: test again, or allow more plant time";
 
 std::string mapOf(const std::vector<SignalInfo>& signals, const Vector& values) {
@@ -285,6 +286,10 @@ class Designer {
         .element;
   }
 
+  bool isStable(Index pair) const {
+    return !elementOf(pair).integrating && elementOf(pair).time_constant >= 0.0;
+  }
+
   PiSetting ruleOf(Index p) const {
     const double Ts = brief_.loop.plant_info.sample_time_s;
     const ProcessElement& e = elementOf(p);
@@ -315,6 +320,9 @@ class Designer {
       settings.push_back(ruleOf(p));
       settings.back().kp *= std::exp2(x[2 * p]);
       settings.back().ti_min *= std::exp2(x[2 * p + 1]);
+      // Integral action slower than the plant is none; the scenario may be too short to show it.
+      if (isStable(p))
+        settings.back().ti_min = std::min(settings.back().ti_min, outline_.settling / 60.0);
     }
     return settings;
   }
@@ -323,10 +331,9 @@ class Designer {
   std::vector<Vector> piStarts() const {
     std::vector<Vector> starts(4, Vector::Zero(2 * loops()));
     for (Index p = 0; p < loops(); ++p) {
-      const bool stable = !elementOf(p).integrating && elementOf(p).time_constant >= 0.0;
       for (std::size_t k = 1; k < starts.size(); ++k)
         starts[k].segment(2 * p, 2) << -static_cast<double>(k),
-            stable ? 0.0 : static_cast<double>(k);
+            isStable(p) ? 0.0 : static_cast<double>(k);
     }
     Vector present = Vector::Zero(2 * loops());
     for (Index p = 0; p < loops(); ++p) {
@@ -683,20 +690,25 @@ class Designer {
       return stable && better;
     };
     const bool law = isFit(d.law_figures, "law"), pi = isFit(d.pi_figures, "PI");
-    d.offers_law = law && (!pi || ratio.isBetter());
+    d.offers_law = law && (!pi || (ratio.isBetter() && d.ratio <= kWorth));
     d.offers_pi = !d.offers_law && pi;
     d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
                                            " of what the PI does"
                         : !d.offers_pi ? kNeither
-                        : law          ? "the PI is offered: the law does not beat it"
+                        : law ? "the PI is offered: the law costs " + shortText(d.ratio) +
+                                    " of it, and " + shortText(kWorth) + " at most is asked"
                                        : "the PI is offered");
   }
 
+  /// Of the outputs that are held: what moves others only need not be known to hold these.
   void lookAtDirections(Design& d) {
-    d.weak = weakDirections(models_, outline_.u_range, outline_.y_scale);
+    Vector scale = outline_.y_scale;
+    for (Index i = 0; i < scale.size(); ++i)
+      if (!brief_.held[static_cast<std::size_t>(i)]) scale[i] = kInfinity;
+    d.weak = weakDirections(models_, outline_.u_range, scale);
     // Scaled gains: a unit of cost is a step of an output, a unit of input its range.
-    const Matrix scaled = outline_.y_scale.cwiseInverse().asDiagonal() * outline_.gain *
-                          outline_.u_range.asDiagonal();
+    const Matrix scaled =
+        scale.cwiseInverse().asDiagonal() * outline_.gain * outline_.u_range.asDiagonal();
     for (const WeakDirection& w : d.weak) {
       const double gain = (scaled * w.inputs).norm();
       std::string direction;
