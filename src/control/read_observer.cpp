@@ -38,7 +38,7 @@ bool readObserver(YamlSection& controller, ObserverParams& params, const Control
   params.disturbance_std = kPart * params.noise_std;
   params.disturbance_std =
       (params.noise_std.array() > 0.0).select(params.disturbance_std, kNoNoise);
-  section.byName("disturbance_std", params.disturbance_std, loop.outputs(), kFinitePositive);
+  section.byName("disturbance_std", params.disturbance_std, loop.outputs(), kFiniteNotNegative);
   if (key == ObserverKey::kInputStd) {
     Vector stated = Vector::Zero(loop.inputCount());
     section.byName("input_std", stated, loop.inputs(), kFiniteNotNegative);

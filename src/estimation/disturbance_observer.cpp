@@ -30,7 +30,10 @@ void multiplyBothSides(const Matrix& A, Matrix& P, Matrix& PA) {
 
 void ObserverParams::validate(Index n_y) const {
   requireNonNegative(noise_std, n_y, "controller.observer.noise_std");
-  requirePositive(disturbance_std, n_y, "controller.observer.disturbance_std");
+  const std::string change = "controller.observer.disturbance_std";
+  requireNonNegative(disturbance_std, n_y, change);
+  require(!estimated.empty() || (disturbance_std.array() > 0.0).all(), change,
+          "numbers > 0 where nothing is estimated");
   const std::string at_inputs = "controller.observer.input_std";
   if (atInputs()) requireNonNegative(input_std, input_std.size(), at_inputs);
   require((input_std.array() > 0.0).count() <= n_y, at_inputs,
@@ -76,7 +79,8 @@ void DisturbanceObserver::reset() {
     R_[i] = std::max(noise * noise, noise > 0.0 ? kLeastNoise * change * change : 0.0);
     P_(row, row) = noise * noise;
     if (!params_.atInputs())
-      P_(n_x_ + i, n_x_ + i) = std::pow(kUnknownChanges * std::max(noise, change), 2);
+      P_(n_x_ + i, n_x_ + i) =
+          change > 0.0 ? std::pow(kUnknownChanges * std::max(noise, change), 2) : 0.0;
   }
   for (Index j = 0; j < n_d_ && params_.atInputs(); ++j)
     P_(n_x_ + j, n_x_ + j) = std::pow(kUnknownChanges * params_.input_std[j], 2);

@@ -23,7 +23,8 @@ struct EstimatedDisturbance {
 /// Section `controller.observer`.
 struct ObserverParams {
   Vector noise_std;        ///< n_y, of the measurements; 0: all of an error is disturbance
-  Vector disturbance_std;  ///< n_y, of the change of d per sample, > 0
+  Vector disturbance_std;  ///< n_y, of the change of d per sample; 0: d stays as at the start,
+                           ///< where disturbances of the model are estimated
   std::vector<EstimatedDisturbance> estimated;  ///< by observers on a model
   Vector input_std;  ///< n_u: d adds to the inputs instead and changes by this; empty: not
   bool noisy() const { return noise_std.any(); }

@@ -41,7 +41,8 @@ OutputModel submodelOf(int output, const std::vector<SampledLinearElement>& elem
   for (const auto& e : elements)
     if (e.element.shared.size() > 1) shared = e.element.shared;
   Polynomial denominator = shared;
-  for (const auto& e : elements) denominator = product(denominator, e.element.own);
+  for (const auto& e : elements)
+    if (e.poles_of < 0) denominator = product(denominator, e.element.own);
   Submodel result;
   for (std::size_t i = 1; i < denominator.size(); ++i)
     result.add(SignalKind::kOutput, output, static_cast<int>(i) - 1, -denominator[i]);
@@ -50,8 +51,11 @@ OutputModel submodelOf(int output, const std::vector<SampledLinearElement>& elem
     const SampledElement& own = elements[j].element;
     Polynomial numerator = own.b;
     if (own.shared.size() < shared.size()) numerator = product(numerator, shared);
+    const int poles = elements[j].poles_of;
+    const std::size_t with = poles < 0 ? j : static_cast<std::size_t>(poles);
     for (std::size_t i = 0; i < elements.size(); ++i)
-      if (i != j) numerator = product(numerator, elements[i].element.own);
+      if (i != with && elements[i].poles_of < 0)
+        numerator = product(numerator, elements[i].element.own);
     for (std::size_t i = 0; i < numerator.size(); ++i)
       result.add(elements[j].kind, elements[j].index, own.delay + static_cast<int>(i),
                  numerator[i]);

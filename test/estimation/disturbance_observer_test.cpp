@@ -173,9 +173,12 @@ TEST(DisturbanceObserver, MistakesNameTheirKey) {
   };
   EXPECT_NE(errorWith(params(-1.0, 1.0)).find("noise_std"), std::string::npos);
   EXPECT_NE(errorWith(params(1.0, 0.0)).find("disturbance_std"), std::string::npos);
+  ObserverParams p = params(1.0, 0.0);
+  p.estimated = {{"load", 1.0, 0.1}};
+  EXPECT_EQ(errorWith(p), "");
   EXPECT_EQ(errorWith(atInput(1.0, 0.0)), "");
   EXPECT_NE(errorWith(atInput(1.0, -1.0)).find("input_std"), std::string::npos);
-  ObserverParams p = atInput(1.0, 1.0);
+  p = atInput(1.0, 1.0);
   p.input_std = Vector::Ones(2);  // two that one output shows
   EXPECT_NE(errorWith(p).find("input_std"), std::string::npos);
 }

@@ -58,6 +58,25 @@ TEST(LinearModel, PredictsItsElementsExactlyAlsoWithFractionalDeadTimes) {
     }
 }
 
+/// 2 / (5 s + 1) from an input, a load behind the same lag: 1 - exp(-t / 5 s) of a step.
+TEST(LinearModel, ALoadMayShareThePolesOfAnElement) {
+  TsModel names = test::columnModel(1.0, true);
+  names.outputs.resize(1);
+  names.inputs.resize(1);
+  const SampledElement lag = sampled(ProcessElement{2.0, 5.0}, 1.0),
+                       load = sampled(ProcessElement{1.0, 5.0}, 1.0);
+  const TsModel model = linearModel(
+      names, {{0, SignalKind::kInput, 0, lag}, {0, SignalKind::kDisturbance, 0, load, 0}},
+      {Vector::Zero(1), Vector::Zero(1), Vector::Zero(1)});
+  const OutputModel& sub = model.submodels[0];
+  ASSERT_EQ(sub.regressors.size(), 3U) << "one lag of the output";
+  double y = 0.0;
+  for (int k = 1; k < 20; ++k) {
+    y = sub.rules[0].coefficients[0] * y + sub.rules[0].coefficients[2];
+    EXPECT_NEAR(y, -std::expm1(-k / 5.0), 1e-12);
+  }
+}
+
 TEST(LinearModel, IsWhatTheShippedColumnModelsHold) {
   for (const bool feed : {false, true}) {
     const TsModel model = test::columnModel(60.0, feed);

@@ -216,7 +216,7 @@ ProcessModels lagsOf(const CommissioningBrief& brief, ProcessKind kind,
     fit.ensemble.push_back({heat.element, inlet.element});
     fit.ensemble.back().front().gain *= part;
   }
-  return fpc::modelsOf(names, {fit}, static_cast<int>(parts.size()));
+  return fpc::modelsOf(names, {fit}, static_cast<int>(parts.size()), {true});
 }
 
 Design designed(const CommissioningBrief& brief, const std::string& folder,
@@ -266,6 +266,31 @@ TEST(Design, AsksThePresentControlOfALoopWithoutAnEnd) {
   const ProcessElement lag{2.5, 240.0, 0.0, 0.0, 60.0, false};
   EXPECT_TRUE(presentHolds(brief, lagsOf(brief, ProcessKind::kStable, lag, {1.1, 0.9})));
   EXPECT_FALSE(presentHolds(brief, lagsOf(brief, ProcessKind::kStable, lag, {-1.0, -2.0})));
+}
+
+/// Gains (1, 1) and (1, 1.1) of two inputs, and likely models with these gains in the last place.
+ProcessModels pairOf(const std::vector<double>& last) {
+  ProcessModels models;
+  for (const double gain : {1.0, 1.1}) {
+    ProcessFit fit;
+    for (const double g : {1.0, gain}) fit.elements.push_back({{g, 60.0}, true});
+    for (const double other : last)
+      fit.ensemble.push_back({{1.0, 60.0}, {gain > 1.0 ? other : 1.0, 60.0}});
+    models.fits.push_back(fit);
+  }
+  return models;
+}
+
+TEST(WeakDirections, AreThoseOfOutputsThatCount) {
+  const Vector one = Vector::Ones(2), first = (Vector(2) << 1.0, INFINITY).finished();
+  const auto certain = [&](const std::vector<double>& last) {
+    const std::vector<WeakDirection> weak = weakDirections(pairOf(last), one, one);
+    EXPECT_EQ(weak.size(), 1U);
+    return weak.at(0).certain;
+  };
+  EXPECT_TRUE(certain({1.05, 1.2, 1.15}));
+  EXPECT_FALSE(certain({1.05, 0.9, 1.15})) << "its determinant has the other sign";
+  EXPECT_TRUE(weakDirections(pairOf({1.05, 0.9}), one, first).empty()) << "one output, one input";
 }
 
 /// A tank that nothing holds, and likely models of it.

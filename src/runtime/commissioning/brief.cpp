@@ -70,6 +70,15 @@ void requireAll(const YamlSection& section, const std::string& key,
 
 }  // namespace
 
+std::vector<bool> CommissioningBrief::counted() const {
+  std::vector<bool> counted = held;
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (std::isfinite(zone_lower[at]) || std::isfinite(zone_upper[at])) counted[i] = true;
+  }
+  return counted;
+}
+
 std::uint32_t CommissioningBrief::samples() const {
   return static_cast<std::uint32_t>(plant_time_h * 3600.0 / loop.plant_info.sample_time_s);
 }

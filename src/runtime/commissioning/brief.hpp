@@ -23,6 +23,8 @@ struct CommissioningBrief {
   std::vector<bool> held;  ///< n_y, is to be held at a setpoint
 
   std::uint32_t samples() const;  ///< of plant_time_h
+  /// n_y: held at a setpoint or in a zone. Others may float as far as the limits.
+  std::vector<bool> counted() const;
 };
 
 /// Keys: loop (name or path, beside the brief or as for `run`), limits {OUTPUT: [low, high]}, moves

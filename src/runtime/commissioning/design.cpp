@@ -38,6 +38,7 @@ constexpr int kMostRounds = 3;                        // of a search, behind its
 constexpr double kMostPresent = 10.0;  // sensitivity that a control which holds a plant may have
 constexpr double kWeakWeight = 0.3;    // of the square of a weak direction's gain
 constexpr double kZoneWeight = 0.01;   // of an output that may float
+constexpr double kWorth = 0.9;         // of what the PI costs: above it a law is not worth it
 constexpr const char* kNeither = "neither is offered: test again, or allow more plant time";
 
 std::string mapOf(const std::vector<SignalInfo>& signals, const Vector& values) {
@@ -285,6 +286,10 @@ class Designer {
         .element;
   }
 
+  bool isStable(Index pair) const {
+    return !elementOf(pair).integrating && elementOf(pair).time_constant >= 0.0;
+  }
+
   PiSetting ruleOf(Index p) const {
     const double Ts = brief_.loop.plant_info.sample_time_s;
     const ProcessElement& e = elementOf(p);
@@ -315,6 +320,9 @@ class Designer {
       settings.push_back(ruleOf(p));
       settings.back().kp *= std::exp2(x[2 * p]);
       settings.back().ti_min *= std::exp2(x[2 * p + 1]);
+      // Integral action slower than the plant is none; the scenario may be too short to show it.
+      if (isStable(p))
+        settings.back().ti_min = std::min(settings.back().ti_min, outline_.settling / 60.0);
     }
     return settings;
   }
@@ -323,10 +331,9 @@ class Designer {
   std::vector<Vector> piStarts() const {
     std::vector<Vector> starts(4, Vector::Zero(2 * loops()));
     for (Index p = 0; p < loops(); ++p) {
-      const bool stable = !elementOf(p).integrating && elementOf(p).time_constant >= 0.0;
       for (std::size_t k = 1; k < starts.size(); ++k)
         starts[k].segment(2 * p, 2) << -static_cast<double>(k),
-            stable ? 0.0 : static_cast<double>(k);
+            isStable(p) ? 0.0 : static_cast<double>(k);
     }
     Vector present = Vector::Zero(2 * loops());
     for (Index p = 0; p < loops(); ++p) {
@@ -393,7 +400,7 @@ class Designer {
       if (held) ++next;
       noise[i] = std::max(noise_[i], 1e-4 * outline_.y_scale[i]);
       walk[i] = std::pow(10.0, x[1]) * std::max(fit.one_step, 1e-4 * outline_.y_scale[i]) *
-                loadShare(models_.model, i);
+                loadUnit(i);
     }
     for (Index j = 0; j < n_u; ++j) {
       move[j] = std::pow(10.0, x[0]) * params_.movement / (brief_.move[j] * brief_.move[j]);
@@ -410,7 +417,17 @@ class Designer {
       c << ", weight_input: " << mapOf(plant.inputs, pull)
         << ", input_target: " << mapOf(plant.inputs, modelRest(models_.fits, n_u).inputs);
     c << ", realisation: observer, observer: {noise_std: " << mapOf(plant.outputs, noise)
-      << ", disturbance_std: " << mapOf(plant.outputs, walk) << "}}";
+      << ", disturbance_std: 0, estimated: {";
+    const std::vector<bool> counted = brief_.counted();
+    const char* comma = "";
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      if (!counted[i]) continue;
+      const std::string text = exactText(walk[static_cast<Index>(i)]);
+      c << comma << loadName(plant.outputs[i].name) << ": {std: " << text << ", walk_std: " << text
+        << "}";
+      comma = ", ";
+    }
+    c << "}}}";
     return rewritten(brief_, "law",
                      {{"model", "{file: '" + model_file_ + "'}"},
                       {"controller", c.str()},
@@ -422,19 +439,11 @@ class Designer {
 
   // ---- judging
 
-  /// What a constant load of the model's equation is divided by once the output rests. Of an
-  /// integrator: once the settling time is over.
-  double loadShare(const TsModel& model, Index output) const {
-    double sum = 1.0, slope = 0.0;  // A(1) of A = 1 - sum a_i q^i, and A / (1 - q) at 1
-    const OutputModel& submodel = model.submodels[static_cast<std::size_t>(output)];
-    for (std::size_t r = 0; r < submodel.regressors.size(); ++r) {
-      if (submodel.regressors[r].kind != SignalKind::kOutput) continue;
-      const double a = submodel.rules.front().coefficients[static_cast<Index>(r)];
-      sum -= a;
-      slope += (submodel.regressors[r].lag + 1) * a;
-    }
-    const double Ts = brief_.loop.plant_info.sample_time_s;
-    return std::max(std::abs(sum), std::abs(slope) * Ts / outline_.settling);
+  /// Of the models' loads, for a shift of the output by 1; of an integrator: per settling time.
+  double loadUnit(Index output) const {
+    const bool per_hour =
+        models_.fits[static_cast<std::size_t>(output)].kind == ProcessKind::kIntegrating;
+    return per_hour ? 3600.0 / outline_.settling : 1.0;
   }
 
   /// The loop on one model, asked for steps of all that is held, then for loads.
@@ -457,10 +466,9 @@ class Designer {
     loop.setpoint.schedule.push_back({at(stretch++), rest, 0.0});
     for (Index i = 0; i < rest.size(); ++i) {
       if (!brief_.held[static_cast<std::size_t>(i)]) continue;
-      const double load = outline_.load[i] * loadShare(model, i);
       Command command;
-      command.name = {"load/" + brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name};
-      command.value = {load};
+      command.name = {loadName(brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name)};
+      command.value = {outline_.load[i] * loadUnit(i)};
       command.mode = CommandMode::kOffset;
       loop.simulation.disturbance_commands.push_back({at(stretch++), command});
     }
@@ -682,20 +690,25 @@ class Designer {
       return stable && better;
     };
     const bool law = isFit(d.law_figures, "law"), pi = isFit(d.pi_figures, "PI");
-    d.offers_law = law && (!pi || ratio.isBetter());
+    d.offers_law = law && (!pi || (ratio.isBetter() && d.ratio <= kWorth));
     d.offers_pi = !d.offers_law && pi;
     d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
                                            " of what the PI does"
                         : !d.offers_pi ? kNeither
-                        : law          ? "the PI is offered: the law does not beat it"
+                        : law ? "the PI is offered: the law costs " + shortText(d.ratio) +
+                                    " of it, and " + shortText(kWorth) + " at most is asked"
                                        : "the PI is offered");
   }
 
+  /// Of the outputs that are held: what moves others only need not be known to hold these.
   void lookAtDirections(Design& d) {
-    d.weak = weakDirections(models_, outline_.u_range, outline_.y_scale);
+    Vector scale = outline_.y_scale;
+    for (Index i = 0; i < scale.size(); ++i)
+      if (!brief_.held[static_cast<std::size_t>(i)]) scale[i] = kInfinity;
+    d.weak = weakDirections(models_, outline_.u_range, scale);
     // Scaled gains: a unit of cost is a step of an output, a unit of input its range.
-    const Matrix scaled = outline_.y_scale.cwiseInverse().asDiagonal() * outline_.gain *
-                          outline_.u_range.asDiagonal();
+    const Matrix scaled =
+        scale.cwiseInverse().asDiagonal() * outline_.gain * outline_.u_range.asDiagonal();
     for (const WeakDirection& w : d.weak) {
       const double gain = (scaled * w.inputs).norm();
       std::string direction;
@@ -766,7 +779,7 @@ LoopFile onModel(const LoopFile& loop, const TsModel& model, const LinearPoint& 
   sim.parameters.clear();
   sim.outputs = namesOf(model.outputs);
   sim.output_delay_s.clear();
-  sim.measured_disturbances = namesOf(model.disturbances);
+  sim.measured_disturbances = namesOf(loop.plant_info.disturbances);
   sim.instruments = {};
   sim.actuator.drives.clear();
   sim.disturbance = {};

@@ -38,22 +38,67 @@ TsModel modelNames(const CommissioningBrief& brief) {
   return names;
 }
 
-TsModel modelOf(const TsModel& names, const std::vector<ProcessFit>& fits, int member) {
+/// As what moves the output most, without its dead time: loads come in where inputs do.
+ProcessElement loadOf(const ProcessElement& strongest) {
+  ProcessElement load = strongest;
+  load.gain = strongest.integrating ? 1.0 / 3600.0 : 1.0;
+  load.dead_time = load.lead = 0.0;
+  return load;
+}
+
+/// Among the inputs that were seen, by its gain over the input's range.
+std::size_t strongest(const ProcessFit& fit, const std::vector<SignalInfo>& inputs) {
+  double most = -1.0;
+  std::size_t found = 0;
+  for (std::size_t j = 0; j < inputs.size(); ++j) {
+    const double range = inputs[j].upper - inputs[j].lower;
+    const double effect =
+        std::abs(fit.elements[j].element.gain) * (std::isfinite(range) ? range : 1.0);
+    if (!fit.elements[j].seen || effect <= most) continue;
+    most = effect;
+    found = j;
+  }
+  return found;
+}
+
+/// It may take the output anywhere, within a sample where it integrates.
+SignalInfo loadSignal(const SignalInfo& output, ProcessKind kind, double sample_time_s) {
+  const bool integrating = kind == ProcessKind::kIntegrating;
+  const double width = (output.upper - output.lower) * (integrating ? 3600.0 / sample_time_s : 1.0);
+  return {loadName(output.name), output.unit + (integrating ? "/h" : ""), -width, width};
+}
+
+TsModel modelOf(TsModel names, const std::vector<ProcessFit>& fits, int member,
+                const std::vector<bool>& loads) {
   std::vector<SampledLinearElement> all;
   const Index n_u = countOf(names.inputs);
-  const LinearPoint point = modelRest(fits, n_u);
+  LinearPoint point = modelRest(fits, n_u);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const ProcessFit& fit = fits[i];
+    const auto elementOf = [&](std::size_t j) -> const ProcessElement& {
+      return member < 0 ? fit.elements[j].element
+                        : fit.ensemble[static_cast<std::size_t>(member)][j];
+    };
+    const std::size_t most = strongest(fit, names.inputs);
+    int place = 0, poles = -1;
     for (std::size_t j = 0; j < fit.elements.size(); ++j) {
       if (!fit.elements[j].seen) continue;
-      const ProcessElement& element =
-          member < 0 ? fit.elements[j].element : fit.ensemble[static_cast<std::size_t>(member)][j];
+      if (j == most) poles = place;
+      ++place;
       const bool input = static_cast<Index>(j) < n_u;
       all.push_back({static_cast<int>(i), input ? SignalKind::kInput : SignalKind::kDisturbance,
                      static_cast<int>(input ? j : j - static_cast<std::size_t>(n_u)),
-                     sampled(element, names.sample_time_s)});
+                     sampled(elementOf(j), names.sample_time_s)});
     }
+    if (!loads[i]) continue;
+    all.push_back({static_cast<int>(i), SignalKind::kDisturbance,
+                   static_cast<int>(countOf(names.disturbances)),
+                   sampled(loadOf(elementOf(most)), names.sample_time_s), poles});
+    names.disturbances.push_back(loadSignal(names.outputs[i], fit.kind, names.sample_time_s));
   }
+  const Index measured = point.disturbances.size();
+  point.disturbances.conservativeResize(countOf(names.disturbances));
+  point.disturbances.tail(point.disturbances.size() - measured).setZero();
   return linearModel(names, all, point);
 }
 
@@ -154,6 +199,8 @@ std::vector<ProcessFit> fitsOf(const OrderedJson& json) {
 
 }  // namespace
 
+std::string loadName(const std::string& output) { return "load_" + output; }
+
 LinearPoint modelRest(const std::vector<ProcessFit>& fits, Index inputs) {
   const Vector& all = fits.front().input;
   LinearPoint point{Vector(static_cast<Index>(fits.size())), all.head(inputs),
@@ -163,12 +210,13 @@ LinearPoint modelRest(const std::vector<ProcessFit>& fits, Index inputs) {
   return point;
 }
 
-ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members) {
+ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members,
+                       const std::vector<bool>& loads) {
   ProcessModels models;
   models.fits = fits;
-  models.model = modelOf(names, fits, -1);
+  models.model = modelOf(names, fits, -1, loads);
   for (int member = 0; member < members; ++member)
-    models.ensemble.push_back(modelOf(names, fits, member));
+    models.ensemble.push_back(modelOf(names, fits, member, loads));
   return models;
 }
 
@@ -193,7 +241,7 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
     require(moved(fits.back()), "output " + names.outputs[i].name,
             "an input that was seen to move it: test again");
   }
-  const ProcessModels found = modelsOf(names, fits, members);
+  const ProcessModels found = modelsOf(names, fits, members, brief.counted());
   ProcessModels models = found;
   for (const ProcessKind kind : {ProcessKind::kUnstable, ProcessKind::kIntegrating}) {
     if (holds(models)) return models;
@@ -201,7 +249,7 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
     for (std::size_t i = 0; i < fits.size(); ++i)
       if (fits[i].kind == kind) fits[i] = fitted(i);
     if (!std::all_of(fits.begin(), fits.end(), moved)) return found;
-    models = modelsOf(names, fits, members);
+    models = modelsOf(names, fits, members, brief.counted());
   }
   return holds(models) ? models : found;
 }
@@ -209,6 +257,7 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
                                           const Vector& output_range) {
   const Index n_u = input_range.size(), n_y = output_range.size();
+  const Index counted = output_range.array().isFinite().count();
   const auto scaled = [&](const Matrix& gains) {
     return Matrix(output_range.cwiseInverse().asDiagonal() * gains * input_range.asDiagonal());
   };
@@ -216,7 +265,7 @@ std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vec
   const Eigen::JacobiSVD<Matrix> svd = svdOf(gains, Eigen::ComputeFullU | Eigen::ComputeFullV);
   std::vector<WeakDirection> weak;
   const Vector values = svd.singularValues();
-  for (Index k = 1; k < std::min(n_u, n_y); ++k) {
+  for (Index k = 1; k < std::min(n_u, counted); ++k) {
     const double share = values[k] / values[0];
     // The gain of this direction as every member of the ensemble has it.
     bool certain = true;
@@ -232,8 +281,7 @@ std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vec
                   ? gainOf(e)
                   : 0.0;
         }
-      if (svd.matrixU().col(k).dot(scaled(one) * svd.matrixV().col(k)) <= 0.2 * values[k])
-        certain = false;
+      if (svd.matrixU().col(k).dot(scaled(one) * svd.matrixV().col(k)) <= 0.0) certain = false;
     }
     if (share < kWeak || !certain) weak.push_back({svd.matrixV().col(k), share, certain});
   }

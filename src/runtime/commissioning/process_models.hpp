@@ -15,14 +15,20 @@
 
 namespace fpc {
 
+/// Outputs of the models may have a load: a disturbance that nobody measures, in the output's unit
+/// (of integrators per hour) behind the lags of the strongest input.
+std::string loadName(const std::string& output);
+
 struct ProcessModels {
   std::vector<ProcessFit> fits;   ///< one per output: elements of inputs, then disturbances
   TsModel model;                  ///< the likeliest
   std::vector<TsModel> ensemble;  ///< equally likely ones
 };
 
-/// `names` says name, sample time and signals; `members` of each fit's ensemble make one.
-ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members);
+/// `names` says name, sample time and signals; `members` of each fit's ensemble make one. `loads`:
+/// n_y, outputs that have one.
+ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members,
+                       const std::vector<bool>& loads);
 
 /// While the present control does not hold what was found, outputs called unstable, then those
 /// called integrating, are taken for another kind. Where that does not help, the kinds that the
@@ -46,6 +52,7 @@ struct WeakDirection {
   double share{};  ///< of the strongest one's gain
   bool certain{};  ///< its gain has the same sign in the whole ensemble
 };
+/// An output with an infinite range does not count.
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
                                           const Vector& output_range);
 
