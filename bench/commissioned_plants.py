@@ -56,7 +56,8 @@ def slower(controller, by):
 
 def commissioned(name, case, folder):
     shipped = yaml.safe_load(fmbpc("resolve", case["loop"]))
-    noisy = {"extends": case["loop"], "noise": {"std": case["noise"], "seed": 1}, **case.get("plant", {})}
+    noisy = {"extends": case["loop"], "noise": {"std": case["noise"], "seed": 1}, "actuator": {"move_upper": case["brief"]["moves"]},
+             **case.get("plant", {})}
     present = {**noisy, "title": f"{name}, slow PI", "controller": slower(shipped["controller"], case["slower"])}
     folder.mkdir(parents=True, exist_ok=True)
     for file, content in (("present", present), ("shipped", {**noisy, "title": f"{name}, PI that ships"}),
