@@ -34,7 +34,7 @@ def shortened(words):
         if option in words:
             words[words.index(option) + 1] = value
     if words[0] == "tune":
-        words = words[:3] + ["--evaluations", "2", "--population", "2"] + words[words.index("--out"):]
+        words += ["--population", "2"] + ([] if "--evaluations" in words else ["--evaluations", "2"])
     if words[0] == "study":
         words = [word for word in words if word not in ("--out", "results/sludge")]
         words += ["--set", "sampling.duration_h=2", "--json"] + ([] if "--seeds" in words else ["--seeds", "1:1"])
