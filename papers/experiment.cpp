@@ -83,7 +83,6 @@ void readStatement(YamlSection& s, Row& row) {
     readNumber(s, key, row.paper);
   }
   s.number("within", row.tolerance.absolute, kFiniteNotNegative);
-  s.boolean("observed", row.observed);
 }
 
 void readFigure(YamlSection& s, Row& row) {
@@ -203,8 +202,6 @@ class RowReader {
     if (!planned.row.statement && !std::isfinite(planned.row.paper) &&
         planned.row.incomparable.empty())
       section.fail("paper", "a number, at_most, at_least, equals or not_compared");
-    if (planned.row.observed && !planned.row.statement)
-      section.fail("observed", "a statement: at_most, at_least or equals");
     try {
       requireSound(planned.here, kDeviations);
       if (planned.only_if) requireSound(planned.only_if->here, {});
@@ -279,10 +276,27 @@ void readPaper(YamlSection s, const std::string& key, Book& book) {
   book.papers.push_back(std::move(paper));
 }
 
+/// What papers/verdicts has found to hold with every wrong plant and law.
+void markObserved(YamlSection s, std::vector<Experiment>& experiments) {
+  for (Experiment& e : experiments) {
+    std::vector<std::string> quantities;
+    s.names(e.name, quantities);
+    for (const std::string& quantity : quantities) {
+      const auto found = std::find_if(e.rows.begin(), e.rows.end(), [&](const PlannedRow& planned) {
+        return planned.row.statement && planned.row.quantity == quantity;
+      });
+      if (found == e.rows.end()) s.fail(e.name, "statements of it; got '" + quantity + "'");
+      found->row.observed = true;
+    }
+  }
+  s.finish();
+}
+
 const Book& book() {
   static const Book all = [] {
     Book book;
     for (const char* key : kKeys) readPaper(YamlSection::load(paperFile(key)), key, book);
+    markObserved(YamlSection::load(paperFile("observed")), book.experiments);
     return book;
   }();
   return all;

@@ -21,7 +21,7 @@ struct Row {
   Tolerance tolerance{};
   Direction direction{Direction::kEqual};
   std::string incomparable;  ///< reason, empty: comparable
-  bool observed{false};      ///< a statement that no wrong plant or law changes
+  bool observed{false};      ///< a statement that holds with every wrong plant and law
   std::string note;
   std::string behind;  ///< loops or command
   Verdict verdict() const { return verdictAt(here.median()); }

@@ -92,11 +92,10 @@ void addTable(std::string& page, const std::vector<Outcome>& outcomes) {
   }
 }
 
-/// Of a statement, also of one that is only observed; null where there is none to judge.
-Json holds(Row row) {
-  row.observed = false;
+/// Of a statement; null where there is none to judge.
+Json holds(const Row& row) {
   const Verdict verdict = row.verdict();
-  if (verdict == Verdict::kHolds) return true;
+  if (verdict == Verdict::kHolds || verdict == Verdict::kObserved) return true;
   return verdict == Verdict::kFails ? Json(false) : Json(nullptr);
 }
 

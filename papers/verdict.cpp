@@ -28,8 +28,9 @@ Verdict ofFigure(const Claim& c) {
 Verdict verdictOf(const Claim& claim) {
   if (!claim.comparable) return Verdict::kNotComparable;
   if (!std::isfinite(claim.here) || !std::isfinite(claim.paper)) return Verdict::kNoResult;
-  if (claim.observed) return Verdict::kObserved;
-  return claim.statement ? ofStatement(claim) : ofFigure(claim);
+  if (!claim.statement) return ofFigure(claim);
+  const Verdict verdict = ofStatement(claim);
+  return claim.observed && verdict == Verdict::kHolds ? Verdict::kObserved : verdict;
 }
 
 const char* name(Verdict verdict) {

@@ -35,7 +35,7 @@ struct Claim {
   Tolerance tolerance{};
   Direction direction{Direction::kEqual};
   bool comparable{true};
-  bool observed{false};  ///< a statement without a verdict
+  bool observed{false};  ///< a statement whose holding proves nothing
 };
 
 Verdict verdictOf(const Claim& claim);

@@ -13,7 +13,7 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parent.parent
 PAGES = [TOP / "README.md", *sorted((TOP / "docs").glob("*.md"))]
 GENERATED = {"results.md", "faults.md", "performance.md", "noise_survey.md", "events.md"}
-RUN = ("identification", "own_data", "own_plant", "real_plant", "first_loop", "loop_file", "loop_controller", "structure_file", "study", "stability")
+RUN = ("identification", "own_data", "own_plant", "real_plant", "first_loop", "loop_file", "loop_controller", "structure_file", "study", "stability", "tuning")
 COMMAND = re.compile(r"^    ((?:sudo |mpirun -n \d+ )?(?:scripts/fmbpc|fmbpc|scripts/\w+|roslaunch|rosrun fmbpc)(?:\.py)? ?.*)$", re.MULTILINE)
 RUNNING = {"set", "disturb", "manual", "auto", "release", "watch", "replay", "recover"}  # ask a loop over topics, or its record
 LONG = {"evaluate", "check", "export"}  # their own tests run them
@@ -33,6 +33,8 @@ def shortened(words):
     for option, value in SHORTER.items():
         if option in words:
             words[words.index(option) + 1] = value
+    if words[0] == "tune":
+        words += ["--population", "2"] + ([] if "--evaluations" in words else ["--evaluations", "2"])
     if words[0] == "study":
         words = [word for word in words if word not in ("--out", "results/sludge")]
         words += ["--set", "sampling.duration_h=2", "--json"] + ([] if "--seeds" in words else ["--seeds", "1:1"])
@@ -85,7 +87,8 @@ class Pages(unittest.TestCase):
                     with self.subTest(page=page, words=called):
                         done = subprocess.run([str(TOP / "scripts" / "fmbpc"), *called], cwd=folder, env=environment,
                                               capture_output=True, text=True, timeout=120, check=False)
-                        self.assertEqual(done.returncode, 0, done.stdout[-400:] + done.stderr)
+                        worse = called[0] == "tune" and done.returncode == 3  # two points may end worse on what is held out
+                        self.assertTrue(worse or done.returncode == 0, done.stdout[-400:] + done.stderr)
                         if called[0] == "study":
                             self.assertTrue(all(loop["median"] > 0.0 for loop in json.loads(done.stdout)["loops"]))
                         count += 1

@@ -11,7 +11,7 @@
 #include "runtime/run.hpp"
 #include "stepped_controller.hpp"
 #include "stepped_plant.hpp"
-#include "study/study_plan.hpp"
+#include "study/seeded_loop.hpp"
 #include "watch.hpp"
 
 namespace fpc::python {

@@ -50,8 +50,26 @@ TuningScenario readScenario(YamlSection& item) {
   scenario.has_seed = item.has("seed");
   item.seed("seed", scenario.seed);
   scenario.set = readSet(item);
+  scenario.vary = readVariations(item);
+  if (!scenario.vary.empty() && !scenario.has_seed) item.fail("vary", "a seed, which draws them");
   item.finish();
+  checked(item, [&] { checkVariations(scenario.vary); });
   return scenario;
+}
+
+/// {seeds: 1:8, vary: {...}}: one for each seed.
+std::vector<TuningScenario> readSeeded(YamlSection section) {
+  std::vector<TuningScenario> scenarios;
+  TuningScenario scenario;
+  scenario.has_seed = true;
+  scenario.vary = readVariations(section);
+  checked(section, [&] { checkVariations(scenario.vary); });
+  for (const std::uint64_t seed : readSeeds(section)) {
+    scenario.seed = seed;
+    scenarios.push_back(scenario);
+  }
+  section.finish();
+  return scenarios;
 }
 
 std::string nameOf(const TuningScenario& scenario, std::size_t number) {
@@ -98,17 +116,7 @@ std::vector<TuningScenario> readScenarios(YamlSection& root, const std::string& 
   const YAML::Node node = root.raw(key);
   if (!node.IsDefined()) return scenarios;
   if (node.IsMap()) {
-    YamlSection section = root.section(key);
-    std::vector<double> seeds;
-    section.numbers("seeds", seeds, kFiniteNotNegative);
-    section.finish();
-    for (const double seed : seeds) {
-      if (seed != std::floor(seed)) root.fail(key, "whole numbers as seeds");
-      TuningScenario scenario;
-      scenario.has_seed = true;
-      scenario.seed = static_cast<std::uint64_t>(seed);
-      scenarios.push_back(scenario);
-    }
+    scenarios = readSeeded(root.section(key));
   } else {
     for (auto& item : root.list(key)) scenarios.push_back(readScenario(item));
   }

@@ -17,13 +17,6 @@ struct StudyLoop {
   Overrides set;     ///< laid over it
 };
 
-/// A number that is drawn anew for every seed, the same for all loops.
-struct StudyVariation {
-  std::string key;  ///< path as --set takes it
-  double lower{}, upper{};
-  bool factor{true};  ///< of the loop's or the plant's own number; false: the number itself
-};
-
 struct StudyFile {
   std::string file;
   std::string title;
@@ -32,7 +25,7 @@ struct StudyFile {
   std::string against;  ///< name of the loop that each other one is paired with
   Overrides set;        ///< laid over all loops
   std::vector<std::uint64_t> seeds;
-  std::vector<StudyVariation> vary;
+  std::vector<Variation> vary;
   std::vector<std::pair<std::string, double>> noise;  ///< std by output, in its unit
   double noise_percent{};  ///< std of each output in percent of the span of its setpoints, or of
                            ///< the setpoint where that never changes; 0: none
@@ -44,11 +37,6 @@ struct StudyFile {
   /// @throws InputError naming the field.
   void validate() const;
 };
-
-/// "1:40", "1,2,7" or a mixture. @throws InputError naming `where`.
-std::vector<std::uint64_t> parseSeeds(const std::string& text, const std::string& where);
-/// "KEY=0.7:1.3" (factors) or "KEY=value:0.1:0.2" (numbers). @throws InputError.
-StudyVariation parseVariation(const std::string& text);
 
 /// A study file from its name in config/study, or path. @throws InputError listing the known names.
 std::string findStudy(const std::string& name_or_path);

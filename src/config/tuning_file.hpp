@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/loop_file.hpp"
+#include "config/variation.hpp"
 #include "optim/population_search.hpp"
 
 namespace fpc {
@@ -53,7 +54,8 @@ struct TuningScenario {
   std::string loop;  ///< another loop file; empty: the one that is tuned
   Overrides set;
   bool has_seed{false};
-  std::uint64_t seed{};  ///< of the disturbance pattern and of the noise, as far as there are any
+  std::uint64_t seed{};  ///< of the disturbance pattern, of noise wherever there is any, of `vary`
+  std::vector<Variation> vary;
 };
 
 struct TuningFile {

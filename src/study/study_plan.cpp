@@ -2,48 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
-#include "base/random.hpp"
 #include "base/text_hash.hpp"
-#include "config/extending_loop.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "study/fitness.hpp"
 #include "study/loop_contents.hpp"
+#include "study/seeded_loop.hpp"
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-/// The number at a key of a resolved loop, or the plant's own where the loop does not say.
-double ownNumber(const LoopFile& loop, const std::string& key) {
-  const std::string text = scalarOf(loop.resolved, key);
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (!text.empty() && *end == '\0' && std::isfinite(value)) return value;
-  const std::string expected = "a key that has a number in loop " + loop.name;
-  require(text.empty() && !loop.external_plant, "vary." + key, expected);
-  const PlantDescription about = makePlant(loop.simulation)->description();
-  using Section = std::pair<std::string, const std::vector<Quantity>&>;
-  for (const auto& [section, quantities] :
-       {Section{"plant.parameters", about.parameters}, Section{"plant.initial_state", about.states},
-        Section{"disturbance.nominal", about.disturbances}})
-    for (const Quantity& quantity : quantities)
-      if (key == section + "." + quantity.name) return quantity.nominal;
-  throw InputError("vary." + key + ": expected " + expected);
-}
-
-/// What factors are laid over.
-double numberAt(const LoopFile& loop, const std::string& key) {
-  const double number = ownNumber(loop, key);
-  require(
-      number != 0.0, "vary." + key,
-      "values (value:LOWER:UPPER) in place of factors: the number of loop " + loop.name + " is 0");
-  return number;
-}
 
 /// Distance from the least to the largest setpoint, or the setpoint where that never changes.
 Vector spanOf(const LoopFile& loop) {
@@ -92,23 +63,6 @@ bool hasNoise(const StudyFile& study, const LoopFile& loop) {
 
 }  // namespace
 
-std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
-  std::vector<std::string> keys;
-  if (loop.disturbance.source == DisturbanceSource::kPattern)
-    keys.emplace_back("disturbance.pattern.seed");
-  if (noisy) keys.emplace_back("noise.seed");
-  const auto& sensors = loop.simulation.instruments.sensors;
-  if (std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
-        return sensor.second.noise_std > 0.0 || sensor.second.lost > 0.0;
-      }))
-    keys.emplace_back("sensors.seed");
-  const auto& parameters = loop.simulation.parameters;
-  const auto local = parameters.find("local_noise");
-  if (local != parameters.end() && local->second > 0.0)
-    keys.emplace_back("plant.parameters.local_noise_seed");
-  return keys;
-}
-
 StudyPlan::StudyPlan(StudyFile study) : study_(std::move(study)) {
   study_.validate();
   makeCases();
@@ -140,8 +94,7 @@ StudyPlan::Prepared StudyPlan::prepare(const StudyLoop& loop,
   prepared.text = read.resolved;
   prepared.contents = contentsOf(read);
   prepared.noise = noiseOf(study_, read);
-  for (const auto& variation : study_.vary)
-    prepared.numbers.push_back(variation.factor ? numberAt(read, variation.key) : 1.0);
+  for (const auto& variation : study_.vary) prepared.numbers.push_back(unitOf(variation, read));
   prepared.seeded = seededKeys(read, hasNoise(study_, read));
   require(study_.seeds.empty() || !prepared.seeded.empty() || !study_.vary.empty(), "seeds",
           "a disturbance pattern, noise or vary in loop " + read.name);
@@ -160,11 +113,7 @@ void StudyPlan::makeCases() {
       const std::string seed = one.has_seed ? "seed " + std::to_string(one.seed) : "";
       one.name = one.scenario + (one.scenario.empty() || seed.empty() ? "" : ", ") + seed;
       if (one.name.empty()) one.name = "as it is";
-      for (std::size_t v = 0; v < study_.vary.size(); ++v) {
-        std::mt19937_64 engine = seededEngine(one.seed, {0x5354554459U, v});
-        const StudyVariation& range = study_.vary[v];
-        one.drawn.push_back(range.lower + (range.upper - range.lower) * uniform(engine));
-      }
+      one.drawn = drawnBy(one.seed, study_.vary);
       cases_.push_back(std::move(one));
     }
   }

@@ -18,10 +18,6 @@ struct StudyCase {
   std::vector<double> drawn;  ///< of StudyFile::vary, in its order: factors or numbers
 };
 
-/// The keys of a loop that take a study's seed: of its influent's pattern, and of noise wherever it
-/// has any; `noisy`: the outputs have some.
-std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy);
-
 class StudyPlan {
  public:
   /// @throws InputError: a loop that does not read, a key that it has not, a seed without use.

@@ -15,25 +15,26 @@
 #include "runtime/run.hpp"
 #include "study/fitness.hpp"
 #include "study/loop_contents.hpp"
+#include "study/seeded_loop.hpp"
 
 namespace fpc {
 namespace {
 
 using Json = OrderedJson;
 
-/// Where a scenario's seed goes: the disturbance pattern and the noise, if the loop has them.
+/// What a scenario's seed changes.
 Overrides seedOverrides(const std::string& loop, const TuningScenario& scenario,
                         const Overrides& set) {
   if (!scenario.has_seed) return {};
   const LoopFile read = readLoop(loop, set);
   Overrides seeds;
-  const std::string seed = std::to_string(scenario.seed);
-  if (read.disturbance.source == DisturbanceSource::kPattern)
-    seeds.emplace_back("disturbance.pattern.seed", seed);
-  if (!scalarOf(read.resolved, "noise.seed").empty() || read.simulation.noise_std.any())
-    seeds.emplace_back("noise.seed", seed);
+  for (const auto& key : seededKeys(read, read.simulation.noise_std.any()))
+    seeds.emplace_back(key, std::to_string(scenario.seed));
+  const auto drawn = drawnBy(scenario.seed, scenario.vary);
+  for (std::size_t v = 0; v < drawn.size(); ++v)
+    seeds.emplace_back(scenario.vary[v].key, exactText(unitOf(scenario.vary[v], read) * drawn[v]));
   require(!seeds.empty(), "scenario " + scenario.name + ": seed",
-          "a loop with a disturbance pattern or noise: " + read.name);
+          "a loop with a disturbance pattern, noise or vary: " + read.name);
   return seeds;
 }
 

@@ -60,11 +60,26 @@ double FlatLine::resolution() const {
   return least;
 }
 
+/// Next to nothing where no resolution explains the steps.
+double FlatLine::grid() const {
+  const double nothing = kRounding * std::abs(value_);
+  double common = 0.0;
+  for (int k = kWindow - known_; k < kWindow; ++k) {
+    double rest = std::abs(step(k));
+    while (rest > nothing) {
+      const double over = std::fmod(common, rest);
+      common = rest;
+      rest = std::min(over, common - over);
+    }
+  }
+  return common;
+}
+
 bool FlatLine::isInMotion() const {
-  if (known_ < kWindow || changes() < kMoving) return false;
+  if (known_ < kFirst || 4 * changes() < 3 * known_) return false;
   const double last = step(kWindow - 1), next = 2.0 * last - step(kWindow - 2);
-  return std::abs(last) > std::max(kFar * resolution(), kRounding * std::abs(value_)) &&
-         next / last > 0.5;
+  const bool goes_on = next / last > 0.5;  // not if the last is 0
+  return goes_on && std::abs(last) > kFar * std::max(grid(), kRounding * std::abs(value_));
 }
 
 int FlatLine::changes() const {

@@ -18,12 +18,13 @@ namespace fpc {
 /// alternates: 1), no difference is a quarter of that sum (a jump, an oscillation that dies out),
 /// and eight steps are of two resolutions or more (rounding alone makes none); without noise no run
 /// is unlikely. A reading at the largest or the smallest value seen so far may be at a limit, as a
-/// flow over a weir. A signal in motion (three quarters of the steps are not 0, the last two go on
-/// one way by far more than q) that shows a number once more was not read anew: the reading is
-/// repeated, for kLate samples; what lasts longer is a limit that it has come to.
+/// flow over a weir. A signal in motion (three quarters of eight steps or more are not 0, the last
+/// two go on one way by far more than the grid of its numbers) that shows a number once more was
+/// not read anew: the reading is repeated, for kLate samples; what lasts longer is a limit that it
+/// has come to.
 class FlatLine {
  public:
-  static constexpr int kWindow = 64, kFewest = 24, kMoving = 48, kLate = 3;
+  static constexpr int kWindow = 64, kFewest = 24, kFirst = 8, kLate = 3;
   static constexpr double kChance = 1e-9;
 
   void reset() { *this = {}; }
@@ -37,6 +38,7 @@ class FlatLine {
  private:
   void push(double step);
   double resolution() const;  ///< q; 0: unknown
+  double grid() const;        ///< all steps are multiples of it
   double step(int k) const { return steps_[static_cast<std::size_t>((next_ + k) % kWindow)]; }
   int changes() const;
   int allowed() const;

@@ -46,6 +46,17 @@ TEST(TuningFile, IsReadIntoItsStructs) {
   EXPECT_EQ(tuning.fitness.terms[1].signal, "u");
 }
 
+TEST(TuningFile, AnEnsembleIsASeedForEachDrawnPlant) {
+  const TuningFile tuning = parseTuning(
+      with("seeds: [1, 2]", "seeds: 1:8, vary: {a.b: [0.5, 2], c: {values: [1, 3]}}"), "t.yaml");
+  ASSERT_EQ(tuning.scenarios.size(), 8U);
+  EXPECT_EQ(tuning.scenarios[7].name, "seed 8");
+  ASSERT_EQ(tuning.scenarios[7].vary.size(), 2U);
+  EXPECT_EQ(tuning.scenarios[7].vary[0].key, "a.b");
+  EXPECT_TRUE(tuning.scenarios[7].vary[0].factor);
+  EXPECT_FALSE(tuning.scenarios[7].vary[1].factor);
+}
+
 TEST(TuningFile, WithoutScenariosTheLoopIsTunedAsItIs) {
   const TuningFile tuning = parseTuning(with("scenarios: {seeds: [1, 2]}\n", ""), "t.yaml");
   ASSERT_EQ(tuning.scenarios.size(), 1U);
@@ -87,8 +98,11 @@ TEST(TuningFile, MistakesNameFileKeyAndWhatWasExpected) {
               {"fitness.terms", "at least one"});
   expectWords(errorIn(with("fitness:\n", "fitness:\n  across: best\n")), {"across", "median"});
   expectWords(errorIn(with("fitness:\n", "fitness:\n  failure: 0\n")), {"failure", "> 0"});
-  expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1, 1]")), {"scenarios", "twice seed 1"});
-  expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1.5]")), {"scenarios", "whole"});
+  expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1, 1]")), {"scenarios.seeds", "only once"});
+  expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1.5]")), {"scenarios.seeds", "whole"});
+  expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1, 2], vary: {a.b: [2, 1]}")),
+              {"scenarios", "vary.a.b", "lower < upper"});
+  expectWords(errorIn(with("{seeds: [1, 2]}", "[{vary: {a.b: [1, 2]}}]")), {"vary", "a seed"});
   expectWords(errorIn(with("{seeds: [1, 2]}", "[{set: 3}]")), {"set", "mapping"});
   expectWords(errorIn(with("population: 8", "population: 0")), {"search.population", ">= 1"});
   expectWords(errorIn(with("population: 8", "method: simplex")), {"search.method", "apso"});

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 
 #include "plant/transfer_matrix.hpp"
@@ -59,6 +60,11 @@ TEST_F(Study, PairsSeeTheSameNoiseAndTheSamePlant) {
     drawn.insert(gain);
   }
   EXPECT_EQ(drawn.size(), 4U);
+}
+
+TEST(StudyPlanOf, EveryStudyThatShipsCanBeMade) {
+  if (!std::getenv("FMBPC_DATA")) GTEST_SKIP() << "FMBPC_DATA is not set";
+  for (const auto& name : studyNames()) EXPECT_NO_THROW(StudyPlan{readStudy(name)}) << name;
 }
 
 TEST_F(Study, CostIsThatOfTheRunWithoutItsNoise) {

@@ -11,6 +11,7 @@
 #include "paths.hpp"
 #include "runtime/run.hpp"
 #include "study/fitness.hpp"
+#include "study/study_plan.hpp"
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
@@ -73,6 +74,39 @@ TEST_F(Tune, ATermCountsAboveItsThresholdAndInItsScenario) {
   const auto second = cost("- {index: effort, input: u, scenario: seed 2}");
   EXPECT_EQ(second[0], plain[0]);
   EXPECT_EQ(second[1], all[1]);
+}
+
+/// Of a plant whose gain is between half and twice that of the loop file.
+std::string uncertain(const std::string& scenarios) {
+  std::string text = lagTuning("");
+  const auto from = text.find("scenarios:"), to = text.find("search:");
+  text.replace(from, to - from, scenarios);
+  return text.replace(text.find("fitness:\n"), 9, "fitness:\n  across: worst\n");
+}
+
+const char* const kGain = "vary: {plant.matrix.elements.0.gain: [0.5, 2]}";
+
+TEST_F(Tune, AnEnsembleHasThePlantsOfAStudyWithItsSeeds) {
+  const std::string seeds = std::string("seeds: 1:5, ") + kGain;
+  const TuningObjective judge = objective(uncertain("scenarios: {" + seeds + "}\n"));
+  const StudyPlan plan(parseStudy("loops: [" + path("lag.yaml") + "]\nseeds: 1:5\n" + kGain +
+                                      "\nfitness: {terms: [{index: ise}]}\n",
+                                  "s.yaml"));
+  for (std::size_t i = 0; i < 5; ++i) {
+    const LoopFile loop = plan.loop(i);
+    EXPECT_EQ(judge.untouched().scenarios[i], fitness(judge.tuning().fitness, loop, runLoop(loop)));
+  }
+}
+
+TEST_F(Tune, GainsTunedOverAnEnsembleAreBetterAtTheWorstUnseenPlant) {
+  const std::string unseen = std::string("held_out: {seeds: 101:112, ") + kGain + "}\n";
+  const auto worst = [&](const std::string& scenarios) {
+    const TuningObjective judge = objective(uncertain(scenarios + unseen), 0);
+    const TuneResult tuned = tune(judge, search());
+    return judge.judgeHeldOut(tuned.history[static_cast<std::size_t>(tuned.best)].shares)->cost;
+  };
+  EXPECT_LT(worst(std::string("scenarios: {seeds: 1:6, ") + kGain + "}\n"),
+            0.8 * worst("scenarios: {seeds: 1:6}\n"));
 }
 
 TEST_F(Tune, AnEffluentIsAskedOnlyOfAPlantThatHasOne) {

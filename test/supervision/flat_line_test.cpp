@@ -109,6 +109,13 @@ TEST(FlatLine, AReadingThatComesTwiceInMotionIsRepeated) {
   for (int k = 0; k < 20; ++k) line.add(54.0);
   EXPECT_FALSE(line.isRepeated()) << "it has come to a limit";
 
+  FlatLine early;  // a step response, as soon as it can be told from a staircase
+  for (int k = 0; k < 60; ++k) {
+    const bool again = k > 0 && k % 10 == 0;
+    early.add(1.0 - std::pow(0.9, again ? k - 1 : k));
+    EXPECT_EQ(early.isRepeated(), again) << k;
+  }
+
   FlatLine coarse;  // whole numbers
   for (int k = 0; k < 1000; ++k) {
     coarse.add(std::round(50.0 + 0.7 * k));

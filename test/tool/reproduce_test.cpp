@@ -143,7 +143,6 @@ TEST(PaperFile, MistakesAreNamed) {
   expectRefused("here: deviation", "here: \"ise(asp_case1)\"", "2 arguments");
   expectRefused("here: deviation", "here: \"1 +\"", "a number, a name");
   expectRefused("here: deviation, ", "", "here");
-  expectRefused("at_most: 25", "paper: 25, observed: true", "observed");
 }
 
 TEST(PaperFile, WhatCannotBeComputedIsARowWithoutAResultThatSaysWhy) {

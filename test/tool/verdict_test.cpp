@@ -112,10 +112,12 @@ TEST(Row, WithOneFailedRunHasNoRangeEither) {
   EXPECT_DOUBLE_EQ(Values(std::vector<double>{0.5, -1.0}).highest(), 0.5);
 }
 
-TEST(Row, ThatIsOnlyObservedIsNotJudged) {
+TEST(Row, ThatIsOnlyObservedCanFailAndCannotHold) {
   Row row = check("ratio", 0.5, Direction::kLower, 1.0, "-", "");
   row.observed = true;
   EXPECT_EQ(row.verdict(), Verdict::kObserved);
+  row.here = 1.5;
+  EXPECT_EQ(row.verdict(), Verdict::kFails);
   row.here = std::nan("");
   EXPECT_EQ(row.verdict(), Verdict::kNoResult) << "a run that failed is said all the same";
 }
