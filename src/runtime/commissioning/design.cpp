@@ -700,15 +700,11 @@ class Designer {
                                        : "the PI is offered");
   }
 
-  /// Of the outputs that are held: what moves others only need not be known to hold these.
   void lookAtDirections(Design& d) {
-    Vector scale = outline_.y_scale;
-    for (Index i = 0; i < scale.size(); ++i)
-      if (!brief_.held[static_cast<std::size_t>(i)]) scale[i] = kInfinity;
-    d.weak = weakDirections(models_, outline_.u_range, scale);
+    d.weak = weakDirections(models_, outline_.u_range, outline_.y_scale);
     // Scaled gains: a unit of cost is a step of an output, a unit of input its range.
-    const Matrix scaled =
-        scale.cwiseInverse().asDiagonal() * outline_.gain * outline_.u_range.asDiagonal();
+    const Matrix scaled = outline_.y_scale.cwiseInverse().asDiagonal() * outline_.gain *
+                          outline_.u_range.asDiagonal();
     for (const WeakDirection& w : d.weak) {
       const double gain = (scaled * w.inputs).norm();
       std::string direction;

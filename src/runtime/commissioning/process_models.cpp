@@ -257,7 +257,6 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
                                           const Vector& output_range) {
   const Index n_u = input_range.size(), n_y = output_range.size();
-  const Index counted = output_range.array().isFinite().count();
   const auto scaled = [&](const Matrix& gains) {
     return Matrix(output_range.cwiseInverse().asDiagonal() * gains * input_range.asDiagonal());
   };
@@ -265,7 +264,7 @@ std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vec
   const Eigen::JacobiSVD<Matrix> svd = svdOf(gains, Eigen::ComputeFullU | Eigen::ComputeFullV);
   std::vector<WeakDirection> weak;
   const Vector values = svd.singularValues();
-  for (Index k = 1; k < std::min(n_u, counted); ++k) {
+  for (Index k = 1; k < std::min(n_u, n_y); ++k) {
     const double share = values[k] / values[0];
     // The gain of this direction as every member of the ensemble has it.
     bool certain = true;

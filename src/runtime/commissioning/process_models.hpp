@@ -52,7 +52,6 @@ struct WeakDirection {
   double share{};  ///< of the strongest one's gain
   bool certain{};  ///< its gain has the same sign in the whole ensemble
 };
-/// An output with an infinite range does not count.
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
                                           const Vector& output_range);
 
