@@ -208,7 +208,7 @@ def column_run(case):
     spec = fmbpc_yaml("column_zones")
     spec["sampling"]["duration_h"] = COLUMN_H
     spec["disturbance"] = {"commands": feed_steps(seed)}
-    spec["clp"] = {"enabled": clp, "perturbation_steps": 40, "cost": "least_perturbation"}
+    spec["clp"] = clp and {"perturbation_steps": 40, "cost": "least_perturbation"}
     if noisy:
         spec["noise"] = {"std": {"y_D": 0.02, "x_B": 0.02}, "seed": seed}
     if back_off is None:  # setpoints in the middle of the zones
@@ -278,7 +278,7 @@ def zone_run(case):
     if not noisy:
         del spec["noise"]
     targets = spec["targets"]
-    spec["clp"] = {"enabled": way == "zones, CLP", "perturbation_steps": 30}
+    spec["clp"] = way == "zones, CLP" and {"perturbation_steps": 30}
     if way.startswith("setpoints"):
         del spec["targets"]
         if middle:

@@ -67,9 +67,9 @@ Variation parseVariation(const std::string& text) {
 void checkVariations(const std::vector<Variation>& vary) {
   std::set<std::string> keys;
   for (const auto& v : vary) {
-    require(keys.insert(v.key).second, "vary." + v.key, "every key only once");
-    require(v.lower < v.upper, "vary." + v.key,
-            "lower < upper (a number that does not vary stands under set), got " +
+    require(keys.insert(v.key).second, "vary", "every key only once, got " + v.key + " twice");
+    require(v.lower < v.upper, "vary",
+            "lower < upper of " + v.key + " (a number that does not vary stands under set), got " +
                 exactText(v.lower) + " and " + exactText(v.upper));
   }
 }

@@ -194,7 +194,7 @@ TEST_F(LoopErrors, APairThatLacksInAModelIsNamed) {
   };
   expectWords(error("controller.model", "[]"),
               {"--set controller.model: expected an item", "y_D from L lacks", "got []"});
-  expectWords(error("controller.model.3.input", "L"), {"controller.model[3].output", "only once"});
+  expectWords(error("controller.model.3.from", "L"), {"controller.model[3].output", "only once"});
   expectWords(error("controller.model.3.gain", "0"), {"controller.model", "x_B from V lacks"});
 }
 

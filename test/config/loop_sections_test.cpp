@@ -44,7 +44,6 @@ const OptionKey kOptions[] = {
     {"asp_influent_csv", "disturbance.csv.interpolation", {"hold", "linear"}},
     {"asp_influent_csv", "disturbance.csv.end", {"error", "hold", "repeat"}},
     {"batch_fuzzy_eq45", "controller.bound", {"cost", "reach"}},
-    {"column_adaptive", "controller.tuning", {"given", "imc", "pso"}},
     {"cstr_modbus", "gateway.type", {"none", "float64", "modbus"}},
     {"cstr_modbus", "gateway.modbus.word_order", {"high_first", "low_first"}},
     {"cstr_modbus", "gateway.modbus.remote_table", {"coil", "discrete"}}};

@@ -46,7 +46,7 @@ TEST_F(SignalNames, AHeaderMustBeAbleToCarryThem) {
 }
 
 TEST_F(SignalNames, KeysOfSectionsByNameAreNoNames) {
-  for (const char* name : {"time_h", "ramp_h", "hold_min", "step_s"})
+  for (const char* name : {"time_h", "ramp_h", "hold_s", "step_s"})
     expectWords(errorFor("A", name, "u"),
                 {":8: plant.matrix.outputs[1].name: expected another name", name});
   expectWords(errorFor("A", "B", "u", "seed"), {":10: plant.matrix.disturbances[0].name"});

@@ -60,7 +60,7 @@ TEST(StudyFile, MistakesNameFileKeyAndWhatWasExpected) {
   expectWords(errorIn("loops: [a]\nvary: {k: [1, 2]}\nfitness: {terms: [{index: ise}]}"),
               {"vary", "seeds"});
   expectWords(errorIn("loops: [a]\nseeds: 1\nvary: {k: [2, 1]}\nfitness: {terms: [{index: ise}]}"),
-              {"k:", "lower < upper"});
+              {"of k", "lower < upper"});
   expectWords(errorIn("loops: [a]\nscenarios: {seeds: [1]}\nfitness: {terms: [{index: ise}]}"),
               {"scenarios", "under seeds"});
   expectWords(errorIn("loops: [a]\nfitness: {across: mean, terms: [{index: ise}]}"),

@@ -101,7 +101,7 @@ TEST(TuningFile, MistakesNameFileKeyAndWhatWasExpected) {
   expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1, 1]")), {"scenarios.seeds", "only once"});
   expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1.5]")), {"scenarios.seeds", "whole"});
   expectWords(errorIn(with("seeds: [1, 2]", "seeds: [1, 2], vary: {a.b: [2, 1]}")),
-              {"scenarios", "vary.a.b", "lower < upper"});
+              {"scenarios.vary", "lower < upper of a.b"});
   expectWords(errorIn(with("{seeds: [1, 2]}", "[{vary: {a.b: [1, 2]}}]")), {"vary", "a seed"});
   expectWords(errorIn(with("{seeds: [1, 2]}", "[{set: 3}]")), {"set", "mapping"});
   expectWords(errorIn(with("population: 8", "population: 0")), {"search.population", ">= 1"});

@@ -139,9 +139,6 @@ TEST(AspRealInfluent, RunsToTheEndInsideItsLimits) {
   for (const char* name : {"asp_bsm1_dry", "asp_uci_daily"}) {
     const Overrides part{{"sampling.duration_h", std::getenv("FMBPC_LONG_TESTS") ? "336" : "200"}};
     const Summary law = runOnce(name, part);
-    for (const char* baseline : {"", "_pi_best", "_pi_x"})
-      std::printf("%-22s rmse x %.4g\n", (std::string(name) + baseline).c_str(),
-                  runOnce(std::string(name) + baseline, part).outputs.back().rmse);
     EXPECT_EQ(law.input_violations + law.move_violations, 0U) << name;
     EXPECT_GE(law.inputs[0].min, 0.0) << name;
     EXPECT_LE(law.inputs[0].max, 1600.0) << name;

@@ -131,8 +131,8 @@ std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
   for (int i = 0; recipe && i < steps; ++i) {
     std::string entry = byName(names, values());
     entry.replace(0, 1,
-                  "{ramp_h: " + exactText(frame.hours(dice.whole(0, 8))) +
-                      ", hold_h: " + exactText(frame.hours(dice.whole(0, 12))) + ", ");
+                  "{ramp_s: " + exactText(3600.0 * frame.hours(dice.whole(0, 8))) +
+                      ", hold_s: " + exactText(3600.0 * frame.hours(dice.whole(0, 12))) + ", ");
     text += (i == 0 ? "  recipe:\n    - " : "    - ") + entry + "\n";
   }
   for (int i = 0; !recipe && i < steps; ++i) {

@@ -77,8 +77,7 @@ std::string randomDrives(Dice& dice, const RandomFrame& frame) {
 
 std::string randomPlausibility(Dice& dice, const RandomFrame& frame) {
   if (!dice.chance(0.25)) return "";
-  std::string text =
-      "plausibility:\n  hold_samples: " + std::to_string(dice.whole(-1, 6)) + "\n  signals:\n";
+  std::string text = "plausibility:\n  signals:\n";
   for (const Quantity& q : frame.outputs) text += doubts(dice, q, frame);
   if (!frame.model.empty() && dice.chance(0.4))
     text += "  reaction_samples: " + std::to_string(dice.whole(8, 15)) +

@@ -17,8 +17,9 @@ constexpr double kRare = 0.01;  // of the samples
 
 /// Loops that are there to show what an event is said of.
 const std::map<std::string, std::set<EventCode>> kOnPurpose{
-    {"asp_case_b", {EventCode::kOutsideModel}},     // a setpoint where its model has no data
-    {"asp_uci_daily", {EventCode::kOutsideModel}},  // a record with days like no other
+    {"asp_case_b", {EventCode::kOutsideModel}},            // a setpoint where its model has no data
+    {"asp_uci_daily", {EventCode::kOutsideModel}},         // a record with days like no other
+    {"cstr_tracking_linear", {EventCode::kOutsideModel}},  // steps beyond its one point
     {"four_on_two", {EventCode::kTargetGivenUp, EventCode::kSoftLimitExceeded}},  // more is asked
     {"shell_fractionator",
      {EventCode::kTargetGivenUp}},  // disturbances beyond what is held at rest

@@ -253,7 +253,7 @@ TEST_F(Study, KeysWithoutANumberAndSeedsWithoutUseAreRefused) {
   expectWords(errorOf([&] { plan("seeds: 1\nvary: {plant.parameters.k: [1, 2]}\n"); }),
               {"vary.plant.parameters.k", "number"});
   expectWords(errorOf([&] { plan("seeds: 1\nvary: {noise.std.y: {values: [1, 1]}}\n"); }),
-              {"vary.noise.std.y", "lower < upper", "got 1 and 1"});
+              {"vary", "lower < upper of noise.std.y", "got 1 and 1"});
   expectWords(errorOf([&] { plan("seeds: 1\nset: {noise.std: 0}\n"); }),
               {"seeds", "noise or vary"});
 }

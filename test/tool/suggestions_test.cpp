@@ -39,7 +39,7 @@ TEST(Suggestions, WhereNothingIsNearTheyAreListedOrTheirListIsNamed) {
   expectAnswer("study nothing", "; `fmbpc loops` lists them; studies: ");
   expectAnswer("reproduce wood1973", "; `fmbpc reproduce --list` lists them");
   expectAnswer("model nothing", "; there are asp_a");
-  expectAnswer("tune asp_case1 nothing", "one of ");
+  expectAnswer("tune asp_case1 nothing", "; there are ");
 }
 
 }  // namespace tool_suggestions_test

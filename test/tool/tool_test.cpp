@@ -208,8 +208,8 @@ TEST_F(Tool, OutDrawsAPicture) {
 TEST_F(Tool, ShippedRecordsAreWhatTheirScriptsPrint) {
   const std::string top = sourceDir();
   for (const std::string name : {"influent_week", "reaction_rates"}) {
-    const std::string command = "/usr/bin/python3 " + top + "/scripts/make_" + name +
-                                ".py | cmp - " + top + "/config/data/" + name + ".csv";
+    const std::string command = "/usr/bin/python3 " + top + "/bench/made_records.py " + name +
+                                " | cmp - " + top + "/config/data/" + name + ".csv";
     EXPECT_EQ(std::system(command.c_str()), 0) << name;
   }
 }

@@ -399,8 +399,8 @@ class Designer {
       pole[i] = std::exp(-Ts / (lag * (held ? std::exp2(x[next]) : 1.0)));
       if (held) ++next;
       noise[i] = std::max(noise_[i], 1e-4 * outline_.y_scale[i]);
-      walk[i] = std::pow(10.0, x[1]) * std::max(fit.one_step, 1e-4 * outline_.y_scale[i]) *
-                loadUnit(i);
+      walk[i] =
+          std::pow(10.0, x[1]) * std::max(fit.one_step, 1e-4 * outline_.y_scale[i]) * loadUnit(i);
     }
     for (Index j = 0; j < n_u; ++j) {
       move[j] = std::pow(10.0, x[0]) * params_.movement / (brief_.move[j] * brief_.move[j]);
@@ -695,9 +695,9 @@ class Designer {
     d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
                                            " of what the PI does"
                         : !d.offers_pi ? kNeither
-                        : law ? "the PI is offered: the law costs " + shortText(d.ratio) +
+                        : law          ? "the PI is offered: the law costs " + shortText(d.ratio) +
                                     " of it, and " + shortText(kWorth) + " at most is asked"
-                                       : "the PI is offered");
+                              : "the PI is offered");
   }
 
   void lookAtDirections(Design& d) {

@@ -27,8 +27,6 @@ TEST(FmbpcParams, ValidateNamesTheField) {
   expect("reference_pole", [](FmbpcParams& p) { p.reference_pole = one(0.5); });
   expect("reference_pole", [](FmbpcParams& p) { p.reference_pole[1] = 1.0; });
   expect("offset_gain", [](FmbpcParams& p) { p.offset_gain = std::nan(""); });
-  expect("transfer_decay", [](FmbpcParams& p) { p.transfer_decay = 1.0; });
-  expect("disturbance_nominal", [](FmbpcParams& p) { p.disturbance_nominal = one(HUGE_VAL); });
   expect("weight_output", [](FmbpcParams& p) { p.weight_output = one(1.0); });
   expect("weight_output", [](FmbpcParams& p) { p.weight_output.setZero(); });
   expect("weight_move", [](FmbpcParams& p) { p.weight_move = one(-1.0); });
