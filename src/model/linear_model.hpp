@@ -34,7 +34,8 @@ struct SampledLinearElement {
   SignalKind kind{SignalKind::kInput};
   int index{};
   SampledElement element;
-  int poles_of{-1};  ///< place among the elements of the output of the one whose own poles these are
+  int poles_of{
+      -1};  ///< place among the elements of the output of the one whose own poles these are
 };
 TsModel linearModel(const TsModel& names, const std::vector<SampledLinearElement>& elements,
                     const LinearPoint& point);

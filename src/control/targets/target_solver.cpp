@@ -19,6 +19,8 @@ constexpr double kFirstRoom = 1e-10, kMostRoom = 1e-7;  // of a unit
 constexpr double kPull = 1e-6;  // of the unknowns to where they are: each stage is strictly convex,
 constexpr int kPulls = 12;      // and pulls again from where it came until nothing moves
 constexpr double kStill = 1e-11;
+constexpr double kPushes = 1e-7;  // a multiplier, in units given up, above rounding
+constexpr double kOwnWay = 1e-5;  // of a normal: so much of it no other has
 
 template <typename Has>
 std::vector<Index> rowsWhere(const std::vector<int>& ranks, const Has& has) {
@@ -75,6 +77,10 @@ struct TargetSolver::Workspace {
   Matrix rows;                // in units
   Vector lower, upper;        // of the rows in units, as far as they are kept
   Vector price, x, level, level_x;
+  Matrix fixed;  // orthonormal columns: ways in which no later stage can move
+  Index n_fixed{};
+  Vector normal;
+  const QpResult* last{};  // of run()
   bool all_kept{true};
   TargetSolution solution;
 
@@ -91,7 +97,9 @@ struct TargetSolver::Workspace {
         price(n),
         x(Vector::Zero(n)),
         level(m),
-        level_x(n) {
+        level_x(n),
+        fixed(n, n),
+        normal(n) {
     std::vector<int> distinct = ranks;
     std::sort(distinct.begin(), distinct.end());
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
@@ -135,6 +143,7 @@ struct TargetSolver::Workspace {
       }
       const QpResult& result = stage.solver.solve(stage.qp);
       solution.status = result.status;
+      last = &result;
       if (!result.usable()) continue;
       x = result.x.head(n);
       return true;
@@ -154,6 +163,33 @@ struct TargetSolver::Workspace {
     return true;
   }
 
+  /// Adds the part of `normal` that lies in no fixed way yet.
+  void fixNormal() {
+    const double size = normal.norm();
+    for (int twice = 0; twice < 2; ++twice)
+      for (Index k = 0; k < n_fixed; ++k) normal -= fixed.col(k).dot(normal) * fixed.col(k);
+    const double own = normal.norm();
+    if (n_fixed < n && own > kOwnWay * size) fixed.col(n_fixed++) = normal / own;
+  }
+
+  /// A limit with a multiplier is active in every answer of its stage, and each answer gives up the
+  /// same of each row. @return whether that leaves x no freedom: later stages would find it again
+  bool leavesNothing(const Stage& stage) {
+    for (Index j = 0; j < n; ++j) {
+      if (std::abs(last->y_x[j]) <= kPushes) continue;
+      normal = Vector::Unit(n, j);
+      fixNormal();
+    }
+    Index at = 0;
+    for (const auto* list : {&stage.soft, &stage.hard})
+      for (const Index row : *list) {
+        if (std::abs(last->y_a[at++]) <= kPushes) continue;
+        normal = rows.row(row).transpose();
+        fixNormal();
+      }
+    return n_fixed == n;
+  }
+
   /// Keeps these rows as they are found at x, or within their limits.
   void keep(const std::vector<Index>& which) {
     for (const Index row : which) {
@@ -165,6 +201,7 @@ struct TargetSolver::Workspace {
 
   /// The ranked limits; afterwards lower and upper can all be kept together.
   bool rank(const TargetProblem& p) {
+    n_fixed = 0;
     if (m == 0) {
       x = p.rest.cwiseQuotient(p.unit);
       return true;
@@ -183,6 +220,7 @@ struct TargetSolver::Workspace {
       put(p, stage);
       if (!pull(stage, nullptr)) return false;
       all_kept = all_kept && farthest(stage.soft) <= kKept;
+      if (leavesNothing(stage)) return true;
       keep(stage.soft);
     }
     return true;
@@ -252,9 +290,11 @@ const TargetSolution& TargetSolver::solve(const TargetProblem& p) {
     w.lower[i] = p.row_lower[i] / p.row_unit[i];
     w.upper[i] = p.row_upper[i] / p.row_unit[i];
   }
-  if (!w.rank(p) || !w.leastCost(p)) return w.solution;
+  if (!w.rank(p)) return w.solution;
+  const bool free = w.n_fixed < w.n;
+  if (free && !w.leastCost(p)) return w.solution;
   w.solution.least_cost = p.price.dot(w.x.cwiseProduct(p.unit));
-  if (!w.rest(p)) w.solution.status = SolveStatus::kSolved;  // x is still the cheapest
+  if (free && !w.rest(p)) w.solution.status = SolveStatus::kSolved;  // x is still the cheapest
   w.conclude(p);
   return w.solution;
 }
