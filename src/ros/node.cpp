@@ -148,10 +148,10 @@ void pause(double seconds) {
 
 void untilHeard(const Failure& failure) {
   constexpr double kConnected = 0.5,
-                   kPatience = 3.0;  // [s] after somebody has connected, and in all
+                   kInAll = 3.0;  // [s] after somebody has connected, and in all
   const double begun_s = steadyNow();
   double alone_s = begun_s;  // until then
-  while (ros::ok() && steadyNow() - alone_s < kConnected && steadyNow() - begun_s < kPatience) {
+  while (ros::ok() && steadyNow() - alone_s < kConnected && steadyNow() - begun_s < kInAll) {
     if (!failure.hasListener()) alone_s = steadyNow();
     pause(0.05);
   }
