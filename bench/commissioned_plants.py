@@ -23,9 +23,15 @@ CASES = {
     "jacketed_vessel": {"loop": "jacketed_vessel", "slower": (3, 6), "noise": {"T": 0.05},
                         "brief": {"limits": {"T": [25, 60]}, "moves": {"T_jacket": 2}, "hold": {"T": 38}, "plant_time_h": 60}},
     "surge_tank": {"loop": "surge_tank_steps_pi", "slower": (3, 6), "noise": {"H": 0.0005},
-                   "brief": {"limits": {"H": [0.1, 0.35]}, "moves": {"I": 0.0003}, "hold": {"H": 0.2}, "plant_time_h": 0.3}},
+                   "brief": {"limits": {"H": [0.1, 0.35]}, "moves": {"I": 0.0003}, "hold": {"H": 0.2}, "plant_time_h": 0.3},
+                   # as shipped it is asked for a step in its first sample, which a PI that starts without a bump answers by its integral alone
+                   "plant": {"setpoint": {"initial": {"H": 0.15},
+                                          "schedule": [{"time_h": 1 / 360, "H": 0.2}, {"time_h": 1 / 120, "H": 0.25}, {"time_h": 1 / 60, "H": 0.3},
+                                                       {"time_h": 1 / 40, "H": 0.25}]}}},
     "reactor": {"loop": "cstr_small_steps_pi", "slower": (3, 3), "noise": {"CA": 0.0003},
-                "brief": {"limits": {"CA": [0.06, 0.14]}, "moves": {"q_c": 2}, "hold": {"CA": 0.1}, "plant_time_h": 4}},
+                "brief": {"limits": {"CA": [0.06, 0.14]}, "moves": {"q_c": 2}, "hold": {"CA": 0.1}, "plant_time_h": 4},
+                "plant": {"setpoint": {"initial": {"CA": 0.1}, "schedule": [{"time_h": 1 / 30, "CA": 0.12}, {"time_h": 1 / 6, "CA": 0.1},
+                                                                            {"time_h": 1 / 3, "CA": 0.08}, {"time_h": 1 / 2, "CA": 0.1}]}}},
     "two_input_reactor": {"loop": "mimo_cstr_steps_pi", "slower": (3, 6), "noise": {"Ca": 0.0005, "T": 0.1},
                           "brief": {"limits": {"Ca": [0.05, 0.16], "T": [425, 450]}, "moves": {"q": 2, "qc": 2}, "hold": {"Ca": 0.1, "T": 438.54},
                                     "plant_time_h": 2},
@@ -33,7 +39,9 @@ CASES = {
                           "plant": {"setpoint": {"schedule": [{"time_h": 0.5, "T": 442}, {"time_h": 1.2, "Ca": 0.085}, {"time_h": 2, "T": 436},
                                                               {"time_h": 2.7, "Ca": 0.11}]}}},
     "sludge": {"loop": "asp_case1_pi_x", "slower": (3, 3), "noise": {"x": 5, "s": 2},
-               "brief": {"limits": {"x": [1000, 3000], "s": [0, 300]}, "moves": {"q_r": 60}, "hold": {"x": 2000}, "plant_time_h": 400}},
+               "brief": {"limits": {"x": [1000, 3000], "s": [0, 300]}, "moves": {"q_r": 60}, "hold": {"x": 2000}, "plant_time_h": 400},
+               "plant": {"setpoint": {"initial": {"s": 55, "x": 2000}, "schedule": [{"time_h": 6, "x": 1800}, {"time_h": 30, "x": 2200},
+                                                                                    {"time_h": 80, "x": 2000}]}}},
 }
 
 
