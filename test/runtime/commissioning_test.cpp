@@ -1,6 +1,7 @@
 #include "runtime/commissioning/commissioning.hpp"
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "base/files.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "paths.hpp"
 #include "runtime/commissioning/design.hpp"
 #include "runtime/run.hpp"
@@ -342,6 +344,31 @@ TEST_F(DesignOf, ATankThatIsHeldWellOffersNothing) {
   EXPECT_LE(std::max(d.pi_figures.worst_peak, d.law_figures.worst_peak),
             std::max(2.0, d.present_peak));
   EXPECT_FALSE(d.offers_law || d.offers_pi);
+}
+
+/// Integral time of the PI [h] found for a lag of 240 s with a dead time, sampled every Ts s.
+double integralTimeOf(const std::string& name, double Ts) {
+  const std::string part = shortText(Ts / 30.0);
+  std::string brief_text = kTankBrief;
+  brief_text.replace(brief_text.find("heat: 1"), 7, "heat: " + part);
+  const std::string folder =
+      folderOf(name, brief_text, "tank.yaml",
+               "extends: heated_tank\nsampling: {sample_time_s: " + shortText(Ts) + "}\n" +
+                   "controller: {type: excitation, signals: [{input: heat, signal: none}]}\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  ProcessModels models = lagsOf(brief, ProcessKind::kStable, {2.5, 240.0, 0.0, 0.0, 60.0, false},
+                                {1.1, 0.9, 1.05, 0.95});
+  models.fits.front().one_step = 1e-3;
+  const YAML::Node law =
+      YAML::Load(designed(brief, folder, models, 2.0, 24).pi)["controller"]["loops"][0];
+  return law["kp"].as<double>() / law["ki_per_h"].as<double>();
+}
+
+/// Stretches of the scenario last until the loop has settled, however short the samples.
+TEST(Design, FindsTheSameIntegralActionWhereSamplesAreShort) {
+  const double usual = integralTimeOf("usual", 30.0), often = integralTimeOf("often", 2.0);
+  EXPECT_GT(often, usual / 1.5);
+  EXPECT_LT(often, usual * 1.5);
 }
 
 /// What the brief does not name under `hold` floats, with a zone or without; a brief without `hold`

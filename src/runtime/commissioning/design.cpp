@@ -31,7 +31,9 @@ constexpr double kLoadRoom = 0.5;    // of the distance to a limit, that a load 
 constexpr double kViolation = 10.0;  // cost of all samples beyond the limits
 constexpr double kFailed = 1e3;      // cost of a run that fails
 constexpr double kCalm = 3.0;        // settling times of one stretch of the scenario
-constexpr int kFewestRun = 40, kMostRun = 220;  // samples of it
+constexpr int kFewestRun = 40, kMostRun = 220;  // samples of it, before it is doubled
+constexpr int kMostDoubled = 3;                 // times, where the loop has not settled by its end
+constexpr double kSettled = 0.05;               // of a step
 constexpr double kShortHorizon = 10, kLongHorizon = 60;
 constexpr double kPeakPower = 6.0, kMostPeak = 20.0;  // of the peak beyond what is allowed
 constexpr int kMostRounds = 3;                        // of a search, behind its first
@@ -59,7 +61,7 @@ struct Outline {
   Matrix gain;              // likeliest; of integrators per settling time
   double settling{};
   std::vector<Pairing> pairs;
-  int stretch{};  // samples
+  int stretch{}, longest{};  // samples
 };
 
 double rangeOf(const InputLimits& limits, Index j) {
@@ -129,8 +131,9 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
     o.load[i] = std::min(o.load[i], kLoadRoom * room);
   }
   o.pairs = pairsOf(brief, o.y_scale.cwiseInverse().asDiagonal() * o.gain * o.u_range.asDiagonal());
-  o.stretch = static_cast<int>(
-      std::clamp<double>(std::ceil(kCalm * o.settling / Ts), kFewestRun, kMostRun));
+  const double calm = std::max<double>(std::ceil(kCalm * o.settling / Ts), kFewestRun);
+  o.stretch = static_cast<int>(std::min<double>(calm, kMostRun));
+  o.longest = static_cast<int>(std::min<double>(calm, kMostRun << kMostDoubled));
   return o;
 }
 
@@ -213,8 +216,7 @@ class Designer {
     leaveOutRefuted(d);
     lookAtDirections(d);
     if (refuted_) return untuned(d);
-    const Vector pi = searched(
-        "PI", piStarts(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
+    const Vector pi = searchedPi(d.pi_figures);
     pi_ = piOf(pi);
     const Vector law = searched(
         "law", lawStarts(), [this](const Vector& x) { return lawText(x); }, d.law_figures);
@@ -629,6 +631,36 @@ class Designer {
       asked.push_back(others[static_cast<std::size_t>(last - more.begin())]);
       others.erase(others.begin() + (last - more.begin()));
     }
+  }
+
+  /// Again with longer stretches where they end before the loop found has settled: what integral
+  /// action does is not seen in them. The law, which costs many times the time, is then tuned and
+  /// compared on the same ones.
+  Vector searchedPi(DesignFigures& figures) {
+    const auto text = [this](const Vector& x) { return piText(x); };
+    Vector x = searched("PI", piStarts(), text, figures);
+    while (outline_.stretch < outline_.longest && !settles(piText(x))) {
+      outline_.stretch = std::min(2 * outline_.stretch, outline_.longest);
+      x = searched("PI", piStarts(), text, figures);
+    }
+    return x;
+  }
+
+  /// Whether the last tenth of each stretch is within a part of a step, without noise.
+  bool settles(const std::string& text) const {
+    const RunRecord record = runLoop(scenario(text, models_.model));
+    const auto stretch = static_cast<std::size_t>(outline_.stretch);
+    for (std::size_t k = stretch; k < record.samples.size(); ++k) {
+      if (k % stretch >= stretch / 10) continue;
+      const SampleRecord& s = record.samples[k];
+      for (Index i = 0; i < s.state.outputs.size(); ++i) {
+        const double e = s.tracking.setpoint[i] - s.state.outputs[i];
+        if (brief_.held[static_cast<std::size_t>(i)] &&
+            std::abs(e) > kSettled * outline_.y_scale[i])
+          return false;
+      }
+    }
+    return record.complete;
   }
 
   DesignFigures probe(const std::string& text, const TsModel& model) const {
