@@ -333,7 +333,6 @@ double exp(double x) {
     def test_what_is_not_exported_is_refused_by_name_and_nothing_is_written(self):
         for loop, words in (("cstr_tracking_nmpc", ("controller.type", "nmpc")),
                             ("asp_case1_pi_x --set controller.loops.0.preview_h=1", ("preview_h",)),
-                            ("asp_case1_pi_x --set plausibility.signals.x.repeated=true", ("repeated",)),
                             ("asp_case1_clp", ("clp", "--to c99")),
                             ("asp_case1_clp --to c99 --real", ("--real",)),
                             ("asp_case1_clp --to c99 --set clp.mode2_steps=3", ("clp.mode2_steps",)),

@@ -57,6 +57,7 @@ void readSignals(YamlSection& signals, const LoopFile& loop, const std::vector<S
     const auto& watched = loop.standstill.signals;  // by a section made for it
     asked.frozen = std::none_of(watched.begin(), watched.end(),
                                 [&](const WatchedSignal& w) { return w.name == info.name; });
+    asked.repeated = true;
     YamlSection section = signals.section(info.name);
     readSignal(section, asked);
     list.push_back(asked);

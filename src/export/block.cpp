@@ -44,10 +44,6 @@ void requireExportable(const LoopFile& loop) {
          "no estimator: what is not measured cannot be estimated in the exported block");
   refuse(!loop.standstill.signals.empty(), "standstill",
          "no standstill watch in the exported block");
-  for (const auto* group : {&loop.plausibility.outputs, &loop.plausibility.disturbances})
-    for (const SignalPlausibility& s : *group)
-      refuse(s.repeated, "plausibility.signals: repeated",
-             "false: repeated readings are not looked for in the exported block");
   refuse(loop.plausibility.reaction_samples > 0, "plausibility.reaction_samples",
          "0: the reaction of the outputs is not watched in the exported block");
 }

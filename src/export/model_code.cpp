@@ -416,6 +416,8 @@ GuardCode::GuardCode(BlockParts& parts, const TsModel& model)
             "no fallback: the exported block has none but its substitutes");
     require(guard.lock_samples == 0, where + "lock_samples",
             "0: locks are not looked for in the exported block");
+    require(guard.growing_swings == 0, where + "growing_swings",
+            "0: swings are not looked for in the exported block");
     require(guard.swing_move == 0.0, where + "swing_move",
             "0: swings are not looked for in the exported block");
   }

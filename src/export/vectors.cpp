@@ -285,9 +285,10 @@ struct BlockVectors::Run {
     // A record may be at another place, or too short: disturbances go to and fro instead.
     if (loop.disturbance.source == DisturbanceSource::kCsv)
       loop.disturbance.source = DisturbanceSource::kConstant;
-    // The block leaves frozen sensors to the PLC, and a plant that is held shows the same again.
+    // The block leaves readings that stand still or come twice to the PLC, and a plant that is held
+    // shows the same again.
     for (auto* group : {&loop.plausibility.outputs, &loop.plausibility.disturbances})
-      for (SignalPlausibility& signal : *group) signal.frozen = false;
+      for (SignalPlausibility& signal : *group) signal.frozen = signal.repeated = false;
     loop.simulation.samples = static_cast<std::uint32_t>(samples) + 1;
     asked = loop.setpoint.initial;
     last = loop.simulation.actuator.initial;

@@ -74,7 +74,12 @@ void addBursts(const Eigen::Ref<const Vector>& y, double usual, std::set<Index>&
     double least = kInfinity;
     for (Index k = first; k < after; ++k) least = std::min(least, std::abs(y[k] - before));
     const double jump = std::min(std::abs(y[first] - before), std::abs(y[after] - y[after - 1]));
-    if (jump > kSpike * usual && std::abs(y[after] - before) < kAgree * least)
+    // the top of a smooth peak is reached by steps like those before it
+    const auto moved = [&](Index k) {
+      return k > 0 && k < y.size() && std::abs(y[k] - y[k - 1]) > kAgree * jump;
+    };
+    if (jump > kSpike * usual && std::abs(y[after] - before) < kAgree * least &&
+        !moved(first - 1) && !moved(after + 1))
       for (Index k = first; k < after; ++k) found.insert(k);
   }
 }

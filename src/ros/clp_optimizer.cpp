@@ -29,6 +29,7 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
       action_(node, topics::kControlAction, comeback_, audienceOf(node, authority())),
       report_(node, topics::kSolverReport, comeback_, audienceOf(node, authority())),
       plan_(node.advertise<fmbpc::InputPlan>(topics::kInputPlan, queueOf(ListenerKind::kViewer))),
+      plan_hearers_(plan_),
       listeners_({action_.publisher(), report_.publisher()}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ClpOptimizer::onPlantInfo, this)),
       base_subscriber_(
@@ -88,7 +89,7 @@ void ClpOptimizer::publish() {
 }
 
 void ClpOptimizer::publishPlan() {
-  if (plan_.getNumSubscribers() == 0) return;
+  if (!plan_hearers_.any()) return;
   const StepHeader& sample = session_.report().header;
   fmbpc::InputPlan msg;
   msg.header.stamp = toStamp(sample.time_ns);

@@ -14,6 +14,7 @@
 
 #include "config/loop_file.hpp"
 #include "ros/health_reporter.hpp"
+#include "ros/hearers.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
@@ -56,6 +57,7 @@ class ClpOptimizer : public Node {
   RingPublisher<fmbpc::ControlAction> action_;
   RingPublisher<fmbpc::SolverReport> report_;
   ros::Publisher plan_;
+  Hearers plan_hearers_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, base_subscriber_, prediction_subscriber_;
   SummaryListener summary_;

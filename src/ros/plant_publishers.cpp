@@ -18,12 +18,14 @@ PlantPublishers::PlantPublishers(ros::NodeHandle node, const LoopFile& loop, con
       signals_(node) {
   // Told to whoever connects, so that tools which start while sample 0 is held already have a time
   // that is not 0. Not latched: roscpp would wake its thread at every sample though nobody listens.
-  if (loop.ring.publish_clock)
+  if (loop.ring.publish_clock) {
     clock_ = node.advertise<rosgraph_msgs::Clock>(
         topics::kClock, queueOf(ListenerKind::kViewer),
         [this](const ros::SingleSubscriberPublisher& listener) {
           if (!now_.clock.isZero()) listener.publish(now_);
         });
+    clock_hearers_ = Hearers(clock_);
+  }
   for (const SignalInfo& output : info.outputs) signals_.add(output.name);
   for (const std::string& disturbance : disturbances) signals_.add(disturbance);
   for (const SignalInfo& input : info.inputs) signals_.add(input.name);
@@ -58,7 +60,7 @@ void PlantPublishers::resend() {
 
 void PlantPublishers::clock(std::int64_t time_ns) {
   now_.clock = toStamp(time_ns);
-  if (clock_ && clock_.getNumSubscribers() > 0) clock_.publish(now_);
+  if (clock_hearers_.any()) clock_.publish(now_);
 }
 
 // Outputs and disturbances of sample k; the input that acted until then, at the time from which it

@@ -13,6 +13,7 @@
 #include "config/loop_file.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "plant/process.hpp"
+#include "ros/hearers.hpp"
 #include "ros/signal_publishers.hpp"
 
 namespace fpc {
@@ -46,6 +47,7 @@ class PlantPublishers {
   SampleClock steps_;
   std::string loop_digest_;
   ros::Publisher info_, measurement_, clock_;
+  Hearers clock_hearers_;
   SignalPublishers signals_;
   fmbpc::Measurement::ConstPtr last_;
   rosgraph_msgs::Clock now_;

@@ -165,7 +165,20 @@ void Links::lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers) 
       registered_ += tell("registerSubscriber", {topic, "*", uri}) ? 1 : 0;
 }
 
-/// roscpp tells nobody which services a node has: all names that a node of ours may have are tried.
+/// roscpp has no list of a node's services: all names that a node of ours may have are tried, each
+/// by a search through all services of the process. So a name that the master has not and that was
+/// not there before is tried in every eighth look.
+bool Links::serves(const std::string& service, bool listed) {
+  if (!listed && served_.count(service) == 0 && looks_ % kEachLook != 0) return false;
+  const bool there =
+      listed || ros::ServiceManager::instance()->lookupServicePublication(service) != nullptr;
+  if (there)
+    served_.insert(service);
+  else
+    served_.erase(service);
+  return there;
+}
+
 void Links::lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces) {
   for (const std::string& space : spaces)
     for (const char* name :
@@ -173,13 +186,14 @@ void Links::lookAtServices(const ByTopic& services, const std::vector<std::strin
           topics::kManualInput, topics::kHold, topics::kCandidate, "set_parameters", "get_loggers",
           "set_logger_level"}) {
       const std::string service = space + "/" + name;
-      if (ros::ServiceManager::instance()->lookupServicePublication(service) &&
-          isForgotten("serves " + service, has(services, service, ros::this_node::getName())))
+      const bool listed = has(services, service, ros::this_node::getName());
+      if (serves(service, listed) && isForgotten("serves " + service, listed))
         registered_ += tell("registerService",
                             {service, services_at_, ros::XMLRPCManager::instance()->getServerURI()})
                            ? 1
                            : 0;
     }
+  ++looks_;
 }
 
 void Links::lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses) {

@@ -55,12 +55,15 @@ class Links {
   bool lacks(const std::string& what, const std::string& node = {});
   bool isForgotten(const std::string& what, bool known);
   void lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers);
+  bool serves(const std::string& service, bool listed);
   void lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces);
   void lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses);
 
   const std::string services_at_;  // asked at the start: roscpp has no port any more when it ends
   std::map<std::string, Missing> missing_, before_;
   Names known_;       // registrations that the master has had
+  Names served_;      // services of this process, as last seen
+  int looks_{};       // at services
   int registered_{};  // in this look
 };
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "ros/hearers.hpp"
 #include "ros/queues.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
@@ -27,14 +28,13 @@ class RingPublisher {
         audience_(std::move(audience)),
         publisher_(node.advertise<Msg>(
             topic, queueOf(ListenerKind::kRecord),
-            [this](const ros::SingleSubscriberPublisher& listener) { catchUp(listener); })) {}
+            [this](const ros::SingleSubscriberPublisher& listener) { catchUp(listener); })),
+        hearers_(publisher_) {}
   RingPublisher(const RingPublisher&) = delete;
   RingPublisher& operator=(const RingPublisher&) = delete;
 
   /// Whether anybody listens, or may in a moment.
-  bool needed() const {
-    return publisher_.getNumSubscribers() > 0 || comeback_.lately(steadyNow());
-  }
+  bool needed() const { return hearers_.any() || comeback_.lately(steadyNow()); }
   /// `repeated`: it was published before.
   void publish(Msg msg, bool repeated) {
     const boost::shared_ptr<const Msg> message = shared(std::move(msg));
@@ -53,7 +53,8 @@ class RingPublisher {
   const Comeback& comeback_;
   Audience audience_;
   FirstAnswers<boost::shared_ptr<const Msg>> first_;
-  ros::Publisher publisher_;  // last: its callbacks end before the rest does
+  ros::Publisher publisher_;  // its callbacks end before the rest does
+  Hearers hearers_;
 };
 
 /// Full names, for a node in the namespace of `node`.

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "ros/hearers.hpp"
+
 namespace fpc {
 
 /// Advertises once; publishes only what somebody listens to.
@@ -23,6 +25,7 @@ class SignalPublishers {
  private:
   ros::NodeHandle node_;
   std::vector<ros::Publisher> publishers_;
+  std::vector<Hearers> hearers_;
   fmbpc::Signal msg_;
 };
 

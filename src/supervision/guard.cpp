@@ -42,6 +42,10 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
   require(lock_samples >= 0, "guard.lock_samples", "an integer >= 0");
   require(lock_error > 0.0 && std::isfinite(lock_error), "guard.lock_error", "a number > 0");
   require(lock_step > 0.0 && lock_step <= 1.0, "guard.lock_step", "a number > 0 and <= 1");
+  require(growing_swings == 0 ||
+              (growing_swings >= GrowingSwings::kFewest && growing_swings <= GrowingSwings::kMost),
+          "guard.growing_swings", "0, or an integer from 3 to 20");
+  require(growing_swings == 0 || pi, "guard.growing_swings", "a fallback beside it, guard.pi");
   require(swing_move >= 0.0 && swing_move <= 1.0, "guard.swing_move", "a number from 0 to 1");
   for (const Index i : lock_outputs)
     require(i >= 0 && i < n_y, "guard: outputs that the law follows", "outputs of the plant");
@@ -67,6 +71,7 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
   for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
   moved_.assign(locks_.size(), true);
   swings_.assign(locks_.size(), OscillationDetector(params_.swing_move, params_.swing_release));
+  growing_.assign(locks_.size(), GrowingSwings(params_.growing_swings, n_y));
   if (params_.lock_outputs.empty())
     for (Index i = 0; i < n_y; ++i) params_.lock_outputs.push_back(i);
   point_ = Vector::Zero(n_y + n_u + countOf(plant_.disturbances));
@@ -88,7 +93,8 @@ void GuardedController::reset(const Measurement& start) {
   if (pi_) pi_->reset(start);
   for (LockUpWatch& lock : locks_) lock.reset();
   for (OscillationDetector& swing : swings_) swing.reset();
-  fallback_ = false;
+  for (GrowingSwings& swing : growing_) swing.reset();
+  fallback_ = unstable_ = false;
   above_ = 0;
   ahead_.reset();
   view_ = {};
@@ -117,7 +123,7 @@ void GuardedController::lookAhead(const Measurement& now, const ControllerOutput
 /// of the process where its model knows nothing is forgotten.
 void GuardedController::comeBack(const Measurement& now, double trust) {
   above_ = trust >= params_.trust_high ? above_ + 1 : 0;
-  if (!fallback_ || above_ < params_.return_samples) return;
+  if (!fallback_ || unstable_ || above_ < params_.return_samples) return;
   fallback_ = false;
   inside_->forget();
   inside_->reset(now);
@@ -190,6 +196,25 @@ void GuardedController::narrow(const Vector& before) {
   }
 }
 
+/// Where the model has no data, and for good once an input swings further each time.
+void GuardedController::fallBack(const Measurement& now, bool outside) {
+  if (!pi_) return;
+  from_ = now;
+  bool grows = false;
+  for (std::size_t i = 0; i < growing_.size(); ++i) {
+    double& input = from_.input_applied[static_cast<Index>(i)];
+    if (!growing_[i].add(input, now.outputs)) continue;
+    input = growing_[i].middle();
+    from_.outputs = growing_[i].middleOfOutputs();
+    grows = true;
+  }
+  const bool begins = (grows && !unstable_) || (outside && !fallback_);
+  unstable_ = unstable_ || grows;
+  if (!begins) return;
+  fallback_ = begins_ = true;
+  pi_->reset(from_);
+}
+
 double GuardedController::trustForMoves(const Measurement& now) {
   if (fallback_ || !known_) return 1.0;
   place(now, now.input_applied, point_);
@@ -199,7 +224,8 @@ double GuardedController::trustForMoves(const Measurement& now) {
 void GuardedController::act(const Measurement& now, const SetpointSource& setpoint,
                             ControllerOutput& output) {
   if (fallback_) {
-    pi_->step(now, setpoint, pi_output_);
+    pi_->step(begins_ ? from_ : now, setpoint, pi_output_);
+    begins_ = false;
     output.input = pi_output_.input;
   }
   const double trust = trustForMoves(now);
@@ -246,13 +272,11 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
   view_.trust = present;
   if (isLaws(output.source)) {
     view_.trust = std::min(present, trustAt(now, output.input));
-    if (pi_ && !fallback_ && process < params_.trust_low) {
-      fallback_ = true;
-      pi_->reset(now);
-    }
+    fallBack(now, process < params_.trust_low);
     view_.outside = view_.trust < params_.trust_low;
     act(now, setpoint, output);
   }
+  if (unstable_) output.events.add({EventCode::kOscillationGrows});
   if (process < params_.trust_low) output.events.add({EventCode::kOutsideModel});
   refreshSignals();
 }

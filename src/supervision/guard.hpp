@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "control/controller_around.hpp"
+#include "supervision/growing_swings.hpp"
 #include "supervision/guard_params.hpp"
 #include "supervision/horizon_trust.hpp"
 #include "supervision/oscillation_detector.hpp"
@@ -74,7 +75,7 @@ class LockUpWatch {
   Eigen::Index known_{};
 };
 
-/// The law `inside`, and six rules:
+/// The law `inside`, and seven rules:
 /// - trust at the measured outputs, disturbances and the input in force, and at the input that the
 ///   law wants: the smaller is said; what is done depends on outputs and disturbances only
 ///   (processTrustOf), as the bounds say which inputs are allowed, and where the law shows its plan
@@ -87,6 +88,8 @@ class LockUpWatch {
 ///   model knows the input: others stand where the plant has them;
 /// - an input that the law throws from end to end of its range (see OscillationDetector) moves
 /// less;
+/// - where some input swings further each time (see GrowingSwings) the law does not hold this
+/// plant: the PI acts until the law begins anew (reset());
 /// - so the guard narrows the limits of u(k): the law's input is put inside them (source `guarded`,
 ///   and an event says why), and the prediction hands them to an optimizer; where the PI acts the
 ///   source is `fallback` and there is no prediction.
@@ -114,6 +117,7 @@ class GuardedController final : public ControllerAround {
   double trustForMoves(const Measurement& now);
   void shrink(double trust);
   void calm(const Measurement& now);
+  void fallBack(const Measurement& now, bool outside);
   void narrow(const Vector& before);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void lookAhead(const Measurement& now, const ControllerOutput& output);
@@ -128,11 +132,15 @@ class GuardedController final : public ControllerAround {
   ControllerOutput pi_output_;
   std::vector<LockUpWatch> locks_;           // one per input
   std::vector<OscillationDetector> swings_;  // one per input
+  std::vector<GrowingSwings> growing_;       // one per input
   std::vector<bool> moved_;                  // by input: the model knows it, so the law may move it
   TsModel model_;
   bool known_{false};  // the model says where its data were
   bool fallback_{false};
-  int above_{};  // samples in a row above trust_high
+  bool unstable_{false};  // it is so for good
+  bool begins_{false};    // the PI, at this sample
+  Measurement from_;      // from there: what swings, from its middle
+  int above_{};           // samples in a row above trust_high
   Vector point_, proposed_;
   HorizonTrust ahead_;
   GuardView view_;

@@ -23,6 +23,7 @@ using Json = OrderedJson;
 /// What is judged, and what is to be said of it.
 struct EvaluatedRun {
   CsvTable table;
+  bool complete{true};
   std::vector<std::string> remarks;
 };
 
@@ -36,10 +37,9 @@ void requireNoOverrides(const std::string& run, const Overrides& overrides) {
 }
 
 EvaluatedRun recorded(const std::string& file) {
-  EvaluatedRun judged{readCsv(file), {}};
+  EvaluatedRun judged{readCsv(file), true, {}};
   const fs::path summary = fs::path(file).parent_path() / "summary.json";
-  if (fs::is_regular_file(summary) && !readSummary(summary.string()).complete)
-    judged.remarks.emplace_back(kIncomplete);
+  if (fs::is_regular_file(summary)) judged.complete = readSummary(summary.string()).complete;
   return judged;
 }
 
@@ -47,9 +47,9 @@ EvaluatedRun runNow(const std::string& run, const Overrides& overrides) {
   const LoopFile loop = readLoop(run, overrides);
   ProgressBar bar(loop.name);
   const RunRecord record = runLoop(loop, watchedBy(bar));
-  EvaluatedRun judged{trajectoryOf(loop, record), {}};
+  EvaluatedRun judged{trajectoryOf(loop, record), record.complete, {}};
   judged.table.file = loop.name;
-  if (!record.complete) judged.remarks.emplace_back(kIncomplete);
+  if (!record.trouble.empty()) judged.remarks.push_back(record.trouble);
   return judged;
 }
 
@@ -78,15 +78,22 @@ void addProtocol(const EffluentReport& report, std::vector<std::string>& remarks
   remarks.emplace_back(text);
 }
 
-Json jsonOf(const std::string& run, const EffluentReport& report,
-            const std::vector<std::string>& remarks) {
-  Json json{{"run", run},          {"class", wordOf(report.levers)},
-            {"remarks", remarks},  {"samples", report.samples},
-            {"days", report.days}, {"EQI", report.EQI},
-            {"IQI", report.IQI},   {"AE", report.AE},
-            {"PE", report.PE},     {"SP", report.SP},
-            {"ME", report.ME},     {"EC", report.EC},
-            {"OCI", report.OCI},   {"limits", Json::object()}};
+Json jsonOf(const std::string& run, const EffluentReport& report, const EvaluatedRun& judged) {
+  Json json{{"run", run},
+            {"complete", judged.complete},
+            {"class", wordOf(report.levers)},
+            {"remarks", judged.remarks},
+            {"samples", report.samples},
+            {"days", report.days},
+            {"EQI", report.EQI},
+            {"IQI", report.IQI},
+            {"AE", report.AE},
+            {"PE", report.PE},
+            {"SP", report.SP},
+            {"ME", report.ME},
+            {"EC", report.EC},
+            {"OCI", report.OCI},
+            {"limits", Json::object()}};
   for (const auto& limit : report.limits)
     json["limits"][limit.name] = {{"limit", limit.limit},
                                   {"share_percent", limit.share_percent},
@@ -138,12 +145,15 @@ int evaluate(const EvaluateArguments& arguments) {
   const Overrides overrides = parseOverrides(arguments.set);
   Json all = Json::array();
   std::set<Levers> levers;
+  bool complete = true;
   for (const auto& run : arguments.runs) {
     EvaluatedRun judged = judgedRun(run, overrides);
     const EffluentReport report = evaluateEffluent(judged.table, params);
     addProtocol(report, judged.remarks);
+    if (!judged.complete) std::fprintf(stderr, "fmbpc: %s: %s\n", run.c_str(), kIncomplete);
+    complete = complete && judged.complete;
     if (!arguments.json && all.empty()) printHead();
-    all.push_back(jsonOf(run, report, judged.remarks));
+    all.push_back(jsonOf(run, report, judged));
     levers.insert(report.levers);
     if (arguments.json) continue;
     print(run, report);
@@ -151,7 +161,8 @@ int evaluate(const EvaluateArguments& arguments) {
   }
   if (!arguments.json && !all.empty()) std::cout << kLegend << (levers.size() > 1 ? kMixed : "");
   if (arguments.json) std::cout << (all.size() == 1 ? all[0] : Json{{"runs", all}}).dump(2) << "\n";
-  return interruption().load() ? 130 : 0;
+  if (interruption()) return kInterrupted;
+  return complete ? 0 : 1;
 }
 
 }  // namespace fpc::tool

@@ -240,6 +240,7 @@ OrderedJson toJson(const LoopHealth& h, const std::string& name) {
   json["error_mean"] = numberOrNull(h.error_mean);
   json["error_std"] = numberOrNull(h.error_std);
   json["settling_s"] = numberOrNull(h.settling_s);
+  json["error_under_pi"] = numberOrNull(h.error_under_pi);
   if (h.oscillation.found)
     json["oscillation"] = {{"period_s", h.periodS()},
                            {"amplitude", numberOrNull(h.oscillation.amplitude)},

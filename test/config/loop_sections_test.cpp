@@ -68,7 +68,7 @@ TEST(LoopSections, WhatSignalsMayBeIsKnownByDefault) {
   for (const auto* group : {&plain.plausibility.outputs, &plain.plausibility.disturbances})
     for (const SignalPlausibility& signal : *group) {
       EXPECT_TRUE(signal.frozen);
-      EXPECT_FALSE(signal.repeated);
+      EXPECT_TRUE(signal.repeated);
     }
   EXPECT_EQ(plain.plausibility.outputs[1].scale_upper, plain.plant_info.outputs[1].upper);
   EXPECT_FALSE(plain.plausibility.range_falls) << "an initial input is no fallback";

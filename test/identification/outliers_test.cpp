@@ -43,6 +43,16 @@ TEST(Outliers, OfGoodRecordsAreNone) {
     }
 }
 
+TEST(Outliers, ASmoothPeakIsNone) {
+  // as an output without noise passes a load
+  Vector y(400);
+  for (Index k = 0; k < y.size(); ++k) {
+    const double t = static_cast<double>(k) - 200.0;
+    y[k] = 1.7 * std::exp(-0.5 * std::pow(t / 3.0, 2.0)) - 0.4 * std::cos(t / 15.0);
+  }
+  EXPECT_TRUE(outliersOf(y).empty());
+}
+
 TEST(Outliers, InPairsAndBurstsAreFound) {
   const DataSet good = recordOf(0.9, 400, 3);
   for (const Index length : {1, 2, 3, 5}) {

@@ -171,6 +171,25 @@ TEST(Bsm1, AStepThatLeavesWhatIsPossibleIsAFailure) {
   }
 }
 
+// Growth of heterotrophs takes ammonium that is not there: the model's own, no step too fast.
+TEST(Bsm1, AmmoniumBelowZeroInThinWaterIsNoFailure) {
+  const auto plant = makePlant("bsm1");
+  const auto& about = plant->description();
+  Vector x = nominalOf(about.states), d = nominalOf(about.disturbances);
+  for (const char* name : {"S_NH_in", "S_ND_in", "X_ND_in"})
+    d[placeOf(about.disturbances, name)] = 0.0;
+  const Vector u = nominalOf(about.inputs);
+  const auto stepper = plant->makeStepper(900.0);
+  stepper->reset(u, d);
+  double least = 0.0;
+  for (int k = 0; k < 96; ++k) {
+    stepper->advance(x, u, d);
+    ASSERT_EQ(stepper->failure(), "") << k;
+    least = std::min(least, x[placeOf(about.states, "S_NH5")]);
+  }
+  EXPECT_LT(least, -0.002);
+}
+
 TEST(Bsm1, LocalNoiseFollowsItsSeed) {
   const auto run = [](double seed) {
     const auto plant = makePlant("bsm1_pi", {{"local_noise", 0.025}, {"local_noise_seed", seed}});

@@ -189,6 +189,28 @@ TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
   EXPECT_EQ(step(1, 1800.0, 0.0), limits().upper[0]);
 }
 
+// A law that is not stable with this plant does not become so: the PI stays.
+TEST_F(Guard, WhatSwingsFurtherEachTimeIsHandedToTheFallbackForGood) {
+  GuardParams p = params(true);
+  p.growing_swings = 6;
+  make(p);
+  double applied = 700.0;
+  std::uint32_t handed = 0;
+  for (std::uint32_t k = 1; k < 150; ++k) {
+    law->wish = 700.0 + (k < 70 ? std::pow(1.05, k) * std::sin(k) : 0.0);
+    applied = step(k, 1800.0, applied);
+    if (out.source != ActionSource::kFallback) continue;
+    if (handed == 0) handed = k;
+    EXPECT_TRUE(out.events.has(EventCode::kOscillationGrows)) << k;
+  }
+  EXPECT_GT(handed, 15U);
+  EXPECT_LT(handed, 40U);
+  EXPECT_EQ(out.source, ActionSource::kFallback) << "long after the law is quiet again";
+  guard->reset(sample(150));
+  step(151, 1800.0, 700.0);
+  EXPECT_EQ(out.source, ActionSource::kBase);
+}
+
 TEST_F(Guard, MistakesNameTheirKey) {
   const auto errorWith = [](const std::function<void(GuardParams&)>& change) -> std::string {
     GuardParams p = params();
@@ -207,6 +229,8 @@ TEST_F(Guard, MistakesNameTheirKey) {
   names(errorWith([](GuardParams& p) { p.return_samples = 0; }), "guard.return_samples");
   names(errorWith([](GuardParams& p) { p.lock_samples = -1; }), "guard.lock_samples");
   names(errorWith([](GuardParams& p) { p.lock_step = 2.0; }), "guard.lock_step");
+  names(errorWith([](GuardParams& p) { p.growing_swings = 2; }), "guard.growing_swings");
+  names(errorWith([](GuardParams& p) { p.growing_swings = 6; }), "guard.pi");
   names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "outputs that the law follows");
 }
 

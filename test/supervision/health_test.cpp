@@ -134,6 +134,21 @@ TEST(Valves, ABandIsCertainOnlyAfterTenTurns) {
   }
 }
 
+TEST(Valves, ASignalAtRestShowsNone) {
+  // one step, then rounding
+  const std::vector<double> e = noise(4000, 9);
+  std::vector<double> u(e.size()), y(e.size(), 0.0);
+  double x = 0.0;
+  StickingValve valve(2e-11, 0.0);
+  for (std::size_t k = 1; k < u.size(); ++k) {
+    y[k] = 0.9 * y[k - 1] + x + 1e-13 * e[k];
+    u[k] = k < 20 ? 50.0 : 1e-11 * (u[k - 1] / 1e-11 * 0.7 + 3.0 * e[k]);
+    x = valve.move(u[k]);
+  }
+  const ValveFit fit = fitValve(u, y, 1, 1);
+  EXPECT_FALSE(fit.plays || fit.sticks);
+}
+
 TEST(SensorFaultsOf, AStepOfTheLoadIsNoSpike) {
   // as a loop answers it: up at once, back in a few samples
   std::vector<double> y(1000, 0.0);
@@ -200,6 +215,42 @@ TEST(HealthOfALoop, TheCauseOfAFaultIsFound) {
               healthy);
   EXPECT_GE(right, 0.9 * faults);
   EXPECT_LE(alarms, 0.05 * healthy);
+}
+
+/// A process under its own PI (simc) whose load walks slowly; its gain changes with u.
+template <typename Bent>
+ControlRecord slowlyLoaded(Bent bent) {
+  const Process p = judgingPlants()[0];
+  const Pi c = simc(p, 1.0);
+  ControlRecord r;
+  r.output = "y";
+  std::mt19937_64 engine = seededEngine(11, {});
+  ProcessState state(p);
+  double integral = 0.0, load = 0.0, walk = 0.0, setpoint = 0.0, y = 0.0;
+  for (int k = 0; k < 6000; ++k) {
+    if (k % 300 == 150) setpoint = 10.0 * (uniform(engine) - 0.5);
+    const double e = setpoint - y, u = c.gain * (e + integral);
+    integral += e / c.integral_time;
+    r.y.push_back(y);
+    r.setpoint.push_back(setpoint);
+    r.u.push_back(u);
+    walk = 0.995 * walk + 0.05 * standardNormal(engine);
+    load += 0.005 * (walk - load);
+    y = state.step(bent(u) + 3.0 * load);
+  }
+  r.model = stepOf(p, 400);
+  return r;
+}
+
+TEST(HealthOfALoop, ASlowLoadDoesNotMakeItSluggish) {
+  const LoopHealth h = judgeLoop(slowlyLoaded([](double u) { return u; }));
+  EXPECT_EQ(h.cause, LoopCause::kHealthy) << nameOf(h.cause);
+  EXPECT_GT(h.error_under_pi, 0.85);
+}
+
+TEST(HealthOfALoop, AGainThatChangesIsNoValve) {
+  const LoopHealth h = judgeLoop(slowlyLoaded([](double u) { return u + 0.3 * std::tanh(u); }));
+  EXPECT_FALSE(h.valve.sticks || h.valve.plays);
 }
 
 TEST(HealthOfALoop, ADailySwingIsNoFault) {

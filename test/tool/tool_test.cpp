@@ -144,6 +144,24 @@ TEST_F(Tool, ARunWhosePlantCannotBeMovedFails) {
   EXPECT_EQ(nlohmann::json::parse(tool(stuck + " --json").printed)["complete"], false);
 }
 
+// Its figures are none of the benchmark's, whoever reads them: no success.
+TEST_F(Tool, ARunThatIsNotCompleteIsNoSuccessOfEvaluate) {
+  const std::string folder = ::testing::TempDir() + "bsm1_incomplete";
+  ASSERT_EQ(tool("run bsm1_own_open --no-plot --set sampling.duration_h=12 --set "
+                 "report.record_from_h=0 --out " +
+                 folder)
+                .code,
+            0);
+  const std::string evaluate = "evaluate --json --from-h 0 " + folder;
+  const Outcome whole = tool(evaluate);
+  EXPECT_EQ(whole.code, 0);
+  EXPECT_EQ(nlohmann::json::parse(whole.printed)["complete"], true);
+  shell("sed -i 's/\"complete\": true/\"complete\": false/' " + folder + "/summary.json");
+  const Outcome stopped = tool(evaluate);
+  EXPECT_EQ(stopped.code, 1);
+  EXPECT_EQ(nlohmann::json::parse(stopped.printed)["complete"], false);
+}
+
 TEST_F(Tool, ARunThatIsHeldThroughoutFails) {
   const std::string held =
       "run column_clip --set controller.coincidence_steps=1 --set sampling.duration_h=1";

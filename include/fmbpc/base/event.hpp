@@ -45,6 +45,7 @@ enum class EventCode : std::uint8_t {
   kReferenceHeldBack,
   kLockUp,
   kOscillation,
+  kOscillationGrows,
   kQpNotSolved,
   kBoundsConflict,
   kInputHeld,

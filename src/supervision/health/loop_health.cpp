@@ -6,6 +6,7 @@
 #include "base/order_statistics.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "supervision/health/better_pi.hpp"
 #include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
@@ -19,9 +20,10 @@ constexpr double kSettled = 0.2;                      // of the error's autocorr
 constexpr double kSlow = 1.55;                        // times the usual settling
 constexpr double kSlowDeadTimes = 14.0;               // where only these are given
 constexpr double kSlowIndex = 0.8;
-constexpr double kLongPeriod = 25.0;  // dead times
-constexpr double kDriven = 0.36;      // unrest of the envelope: below it driven, above it rings
-constexpr double kAtLimits = 0.3;     // share
+constexpr double kWorthTuning = 0.85;  // of the error, that a PI would leave
+constexpr double kLongPeriod = 25.0;   // dead times
+constexpr double kDriven = 0.36;       // unrest of the envelope: below it driven, above it rings
+constexpr double kAtLimits = 0.3;      // share
 
 struct CauseWords {
   const char* name;
@@ -185,8 +187,38 @@ LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double l
   return slow ? LoopCause::kSluggishTuning : LoopCause::kAggressiveTuning;
 }
 
-/// Slower than a PI of one's own for this response would be (simc, skogestad2003), and by what
-/// could be foretold.
+/// What a PI tuned for the model would make of the record; without a model: for the response that
+/// one half of it shows, on that of the other, the worse of both. Under feedback a record without
+/// noise shows responses that are none; those of its halves differ.
+void judgeTuning(const ControlRecord& r, LoopHealth& h, const std::vector<double>& error,
+                 const std::vector<double>& rest) {
+  const bool rests = finiteOnly(rest).size() >= kFewestAutomatic;
+  const RecordedLoop loop{r.sample_time_s, error, rests ? rest : error, r.u, r.u_lower, r.u_upper};
+  if (!r.model.empty()) {
+    h.error_under_pi = errorUnderPi(loop, r.model, r.model);
+    return;
+  }
+  if (h.response.empty()) return;
+  const auto factor =
+      static_cast<Eigen::Index>(std::round(h.response.sample_time_s / r.sample_time_s));
+  const std::vector<double>& input = r.position.empty() ? r.u : r.position;
+  const auto half = static_cast<std::ptrdiff_t>(r.y.size() / 2);
+  const auto part = [half](const std::vector<double>& v, bool later) {
+    return later ? std::vector<double>(v.begin() + half, v.end())
+                 : std::vector<double>(v.begin(), v.begin() + half);
+  };
+  StepResponse shown[2];
+  for (const bool later : {false, true})
+    shown[later] =
+        loopDynamics(part(input, later), part(r.y, later), factor, r.sample_time_s).response;
+  const double one = errorUnderPi(loop, shown[0], shown[1]),
+               other = errorUnderPi(loop, shown[1], shown[0]);
+  h.error_under_pi = std::isfinite(one + other) ? std::max(one, other) : kNaN;
+}
+
+/// Slower than a PI of one's own for this response would be (simc, skogestad2003), by what could be
+/// foretold, and worse than that PI under the same loads: a slow load makes a slow error in any
+/// loop.
 bool isSluggish(const ControlRecord& r, const LoopHealth& h, const std::vector<double>& rest) {
   ReactionCurve curve = reactionCurve(h.response);
   if (!r.model.empty()) curve = reactionCurve(r.model);
@@ -198,6 +230,7 @@ bool isSluggish(const ControlRecord& r, const LoopHealth& h, const std::vector<d
     usual = kSlowDeadTimes * dead;
   }
   if (!(h.settling_s > usual)) return false;
+  if (std::isfinite(curve.dead_time_s) && !(h.error_under_pi < kWorthTuning)) return false;
   const int ahead = static_cast<int>(std::ceil(2.0 * dead / h.sample_time_s));
   return minimumVariance(rest, std::max(1, ahead)).index < kSlowIndex;
 }
@@ -273,6 +306,12 @@ void remarkHarris(LoopHealth& h) {
                       shortText(h.harris.std_error));
 }
 
+void remarkTuning(LoopHealth& h) {
+  if (h.cause == LoopCause::kSluggishTuning && std::isfinite(h.error_under_pi))
+    h.remarks.push_back("A PI tuned for the response would leave " + percent(h.error_under_pi) +
+                        " of the error's standard deviation under the same loads");
+}
+
 }  // namespace
 
 void ControlRecord::validate() const {
@@ -331,8 +370,10 @@ LoopHealth judgeLoop(const ControlRecord& r) {
   h.settling_s = settling * r.sample_time_s;
   if (finiteOnly(error).size() < kFewestAutomatic || !(h.error_std > 0.0)) return h;
   if (!r.u.empty()) judgeValve(r, h, settling);
+  if (!r.u.empty()) judgeTuning(r, h, error, rest);
   h.cause = causeOf(r, h, lower, upper, rest);
   remarkHarris(h);
+  remarkTuning(h);
   remarkSensor(r, h);
   remarkPeriod(h);
   remarkTest(r, h);

@@ -68,8 +68,9 @@ struct LoopHealth {
   DeadTimeSource dead_time_source{};
   MinimumVariance harris;  ///< of stretches whose setpoint rests; times as the record's
   double error_std{kNaN}, error_mean{kNaN};
-  double settling_s{kNaN};  ///< until the error's autocorrelation is 0.2
-  Oscillation oscillation;  ///< of the error; period in samples
+  double settling_s{kNaN};      ///< until the error's autocorrelation is 0.2
+  double error_under_pi{kNaN};  ///< of a PI tuned for the response, over that of the record
+  Oscillation oscillation;      ///< of the error; period in samples
   ValveFit valve;
   SensorFaults sensor;
   StepResponse response;  ///< as the record shows it; empty if it does not

@@ -16,6 +16,7 @@ constexpr double kMemories[] = {6.0, 15.0, 40.0, 100.0};  // of smoothed pasts [
 constexpr int kSmoothed = 2 * static_cast<int>(std::size(kMemories));
 constexpr double kBands[] = {0.1, 0.15, 0.2, 0.27, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92, 1.0};
 constexpr double kLeastF = 8.5, kLeastValveShare = 0.05, kLeastJumpF = 10.0;
+constexpr double kLeastRange = 1e-3;  // of its swing, that a signal not at rest moves in
 constexpr Eigen::Index kFewest = 1000;
 constexpr int kFewestTurns = 10;
 
@@ -88,11 +89,39 @@ class ValveRegression {
   /// Squares that are left when positions of the valve are known too.
   double leftWith(const std::vector<double>& x) const {
     Matrix add(rows(), lags_);
+    addPast(x, 0, add);
+    return leftBy(add);
+  }
+
+  /// The mean square that is left, per degree of freedom, when the answer may bend smoothly:
+  /// squares and cubes of the signal, products with the output.
+  double smoothVariance(const std::vector<double>& signal, const std::vector<double>& y) const {
+    Matrix add(rows(), 3 * lags_);
+    const double mean_u = meanOf(signal), mean_y = meanOf(y);
+    std::vector<double> square(signal.size()), cube(signal.size()), product(signal.size());
+    for (std::size_t k = 0; k < signal.size(); ++k) {
+      const double u = signal[k] - mean_u;
+      square[k] = u * u;
+      cube[k] = u * u * u;
+      product[k] = u * (y[k] - mean_y);
+    }
+    addPast(square, 0, add);
+    addPast(cube, lags_, add);
+    addPast(product, 2 * lags_, add);
+    return leftBy(add) / static_cast<double>(rows() - base_.cols() - add.cols());
+  }
+
+ private:
+  void addPast(const std::vector<double>& x, Eigen::Index column, Matrix& add) const {
     const double mean = meanOf(x);
     for (Eigen::Index r = 0; r < rows(); ++r) {
       const auto k = static_cast<std::size_t>(rows_[static_cast<std::size_t>(r)]);
-      for (int i = 0; i < lags_; ++i) add(r, i) = x[k - static_cast<std::size_t>(i) - 1] - mean;
+      for (int i = 0; i < lags_; ++i)
+        add(r, column + i) = x[k - static_cast<std::size_t>(i) - 1] - mean;
     }
+  }
+
+  double leftBy(Matrix& add) const {
     scale(add);
     add -= base_ * solver_.solve(base_.transpose() * add);
     Matrix normal = add.transpose() * add;
@@ -101,7 +130,6 @@ class ValveRegression {
     return std::max(1e-12 * left_, left_ - cross.dot(normal.ldlt().solve(cross)));
   }
 
- private:
   static void scale(Matrix& columns) {
     for (Eigen::Index c = 0; c < columns.cols(); ++c) {
       const double size = std::sqrt(columns.col(c).squaredNorm() /
@@ -214,9 +242,11 @@ ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& 
   const std::vector<double> finite = finiteOnly(signal);
   if (finite.size() < static_cast<std::size_t>(kFewest)) return fit;
   const double range = sampleQuantile(finite, 0.99) - sampleQuantile(finite, 0.01);
-  if (!(range > 0.0)) return fit;
+  const auto [least, most] = std::minmax_element(finite.begin(), finite.end());
+  if (!(range > kLeastRange * (*most - *least))) return fit;
   const int lags = std::clamp(delay + 4, 5, 20);
-  const ValveRegression regression(blockMeans(signal, factor), blockMeans(y, factor), lags);
+  const std::vector<double> coarse = blockMeans(signal, factor), answer = blockMeans(y, factor);
+  const ValveRegression regression(coarse, answer, lags);
   const Eigen::Index free = regression.rows() - regression.unknowns();
   if (regression.rows() < kFewest || !(regression.left() > 0.0)) return fit;
   const auto leftOf = [&](const Shape& s) {
@@ -252,7 +282,8 @@ ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& 
   fit.significance = (regression.left() - best) / lags / of_noise;
   fit.jump_significance = (best_play - best) / of_noise;
   const bool certain = fit.significance > kLeastF && fit.share > kLeastValveShare &&
-                       turnsOf(finite, 0.5 * fit.band) >= kFewestTurns;
+                       turnsOf(finite, 0.5 * fit.band) >= kFewestTurns &&
+                       of_noise < regression.smoothVariance(coarse, answer);
   fit.sticks = certain && fit.jump > 0.0 && fit.jump_significance > kLeastJumpF;
   fit.plays = certain && !fit.sticks;
   if (fit.plays) {

@@ -47,7 +47,8 @@ struct ValveFit {
 
 /// The error of a linear model one step ahead, over a grid of bands and jumps of both kinds of
 /// valve: y from its past, the signal's and the valve's. Certain only where the signal turns ten
-/// times by more than half of the band: only turns show one. Source: jelali2008, karra2009
+/// times by more than half of the band (only turns show one), and where it explains more than an
+/// answer that bends smoothly: a gain that changes is no valve. Source: jelali2008, karra2009
 /// @param signal, y  equally long, NaN where unknown
 /// @param delay      largest dead time that is expected [means]
 /// @param factor     samples in a mean; at least 1000 means are needed, else the fit is empty
