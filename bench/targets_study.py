@@ -222,7 +222,8 @@ def column_run(case):
         spec["targets"]["band"] = 0.002
         if back_off == EQUAL_PURITY:
             spec["targets"].update(band=0, observer={"noise_std": 0.02, "disturbance_std": 0.0001})
-            spec["clp"].update({f"output_{side}": dict(zip(COLUMN, PURITIES[:, i].tolist())) for i, side in enumerate(("lower", "upper"))})
+            if clp:
+                spec["clp"].update({f"output_{side}": dict(zip(COLUMN, PURITIES[:, i].tolist())) for i, side in enumerate(("lower", "upper"))})
             spec["controller"]["observer"]["disturbance_std"] = 0.001 if clp else 0.005
     run = fmbpc.Loop(spec).run(progress=False)
     y, v = columns(run.outputs, COLUMN), np.asarray(run.inputs["V"], float)[:-1]
@@ -430,7 +431,7 @@ def solids_rank(model, slow):
     spec["controller"] = {"type": "fmbpc", "law": "iterated", "horizon_steps": 4, "reference_pole": 0, "weight_output": {"S_NH5": 1, "TSS_L1": 0},
                           "weight_move": {**spec["controller"]["weight_move"], "air": 0.5, "Qw": 1e-8}, "weight_input": {"air": 0, "Qw": 1e-5},
                           "realisation": "observer", "observer": {"noise_std": noise, "disturbance_std": {"S_NH5": 0.005, "TSS_L1": 0.05}}}
-    spec["targets"] = {"outputs": {"S_NH5": {"setpoint": True, "setpoint_rank": 2}, "TSS_L1": {"upper": 30, "rank": 1}}, "inputs": {"Qw": {"rest": 260, "lower": 260}},
+    spec["targets"] = {"outputs": {"S_NH5": {"setpoint": True, "rank": 2}, "TSS_L1": {"upper": 30, "rank": 1}}, "inputs": {"Qw": {"rest": 260, "lower": 260}},
                        "observer": {"noise_std": noise, "disturbance_std": {"S_NH5": 0.002, "TSS_L1": slow}}}
     return spec
 
