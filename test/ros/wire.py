@@ -120,6 +120,19 @@ class Refused(Healthy):
     accepts = False
 
 
+class Once(Healthy):
+    """Calls `act` once, behind a question that begins with `head` and before its answer: the client sends nothing meanwhile."""
+
+    def __init__(self, head, act):
+        self.head, self.act = head, act
+
+    def answer(self, question, data, transaction, unit):
+        if self.act and question.startswith(self.head):
+            act, self.act = self.act, None
+            act()
+        return packed(transaction, unit, data)
+
+
 class Silent(Healthy):
     def question(self, data):
         return None, None
