@@ -176,7 +176,9 @@ class Modbus(unittest.TestCase):
             return status.counts()["times that leadership was lost"]
         status, port = ring.NodeStatus("plant_gateway"), self.plc.port
         # Each behind the gateway's own renewal: what is written between its look and its renewal is undone unseen.
-        for renewal, write in ((b"\5\0\0", lambda: wire.write_coil(port, 0, False)), (b"\6\0\x16", lambda: wire.write_register(port, 22, 0))):
+        for renewal, write in (
+                (b"\5\0\0", lambda: wire.write_coil(port, 0, False)),
+                (b"\x10\0\x16", lambda: wire.write_register(port, 22, 0))):
             before = lost()
             lines, _ = self.check(lambda r=renewal, w=write: self.wire.breaks(wire.Once(r, w)), self.wire.heals, 0.0, True)
             self.assertNotIn("another master is refused", [line.get("event") for line in lines])
