@@ -26,17 +26,18 @@ void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPl
 }
 
 /// The plant's range, wider by a part of itself; an endless one asks nothing.
-SignalPlausibility defaultsOf(const SignalInfo& signal, double margin, bool may_step) {
+SignalPlausibility defaultsOf(const SignalInfo& signal, double margin, bool is_output) {
   SignalPlausibility asked;
+  asked.repeated = is_output;  // records of disturbances are often rounded
   const double range = signal.upper - signal.lower;
   if (!std::isfinite(range)) return asked;
   asked.lower = signal.lower - margin * range;
   asked.upper = signal.upper + margin * range;
-  if (!may_step && range > 0.0) asked.jump = kJumpOfRange * range;
+  if (is_output && range > 0.0) asked.jump = kJumpOfRange * range;
   return asked;
 }
 
-void readSignal(YamlSection& section, SignalPlausibility& asked) {
+void readSignal(YamlSection& section, bool is_output, SignalPlausibility& asked) {
   section.number("lower", asked.lower, {});
   section.number("upper", asked.upper, {});
   if (!(asked.lower <= asked.upper)) section.fail("upper", "a number >= lower");
@@ -44,22 +45,21 @@ void readSignal(YamlSection& section, SignalPlausibility& asked) {
   section.number("jump", asked.jump, {0.0, kInfinity, true});
   section.integer("jump_samples", asked.jump_samples, 1);
   section.boolean("frozen", asked.frozen);
-  section.boolean("repeated", asked.repeated);
+  if (is_output) section.boolean("repeated", asked.repeated);
   readOption(section, "substitute", asked.substitute);
   section.finish();
 }
 
 void readSignals(YamlSection& signals, const LoopFile& loop, const std::vector<SignalInfo>& infos,
-                 double margin, bool may_step, std::vector<SignalPlausibility>& list) {
+                 double margin, bool is_output, std::vector<SignalPlausibility>& list) {
   for (const SignalInfo& info : infos) {
-    SignalPlausibility asked = defaultsOf(info, margin, may_step);
+    SignalPlausibility asked = defaultsOf(info, margin, is_output);
     describeInstrument(loop, info, asked);
     const auto& watched = loop.standstill.signals;  // by a section made for it
     asked.frozen = std::none_of(watched.begin(), watched.end(),
                                 [&](const WatchedSignal& w) { return w.name == info.name; });
-    asked.repeated = true;
     YamlSection section = signals.section(info.name);
-    readSignal(section, asked);
+    readSignal(section, is_output, asked);
     list.push_back(asked);
   }
 }
@@ -92,8 +92,8 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   loop.stuck.hold = loop.gateway.enabled();
   readOption(section, "stuck", loop.stuck.hold, {{"say", false}, {"hold", true}});
   YamlSection signals = section.section("signals");
-  readSignals(signals, loop, plant.outputs, margin, false, params.outputs);
-  readSignals(signals, loop, plant.disturbances, margin, true, params.disturbances);
+  readSignals(signals, loop, plant.outputs, margin, true, params.outputs);
+  readSignals(signals, loop, plant.disturbances, margin, false, params.disturbances);
   signals.finish();
   checked(section, [&] {
     params.validate(plant.outputs.size(), plant.disturbances.size(),

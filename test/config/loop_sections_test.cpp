@@ -68,8 +68,11 @@ TEST(LoopSections, WhatSignalsMayBeIsKnownByDefault) {
   for (const auto* group : {&plain.plausibility.outputs, &plain.plausibility.disturbances})
     for (const SignalPlausibility& signal : *group) {
       EXPECT_TRUE(signal.frozen);
-      EXPECT_TRUE(signal.repeated);
+      EXPECT_EQ(signal.repeated, group == &plain.plausibility.outputs)
+          << "records of disturbances are often rounded";
     }
+  EXPECT_THROW(readLoop("asp_case1_pi_x", {{"plausibility.signals.q_i.repeated", "true"}}),
+               InputError);
   EXPECT_EQ(plain.plausibility.outputs[1].scale_upper, plain.plant_info.outputs[1].upper);
   EXPECT_FALSE(plain.plausibility.range_falls) << "an initial input is no fallback";
   EXPECT_TRUE(
