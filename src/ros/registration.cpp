@@ -169,14 +169,11 @@ void Links::lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers) 
 /// by a search through all services of the process. So a name that the master has not and that was
 /// not there before is tried in every eighth look.
 bool Links::serves(const std::string& service, bool listed) {
-  if (!listed && served_.count(service) == 0 && looks_ % kEachLook != 0) return false;
-  const bool there =
-      listed || ros::ServiceManager::instance()->lookupServicePublication(service) != nullptr;
-  if (there)
-    served_.insert(service);
-  else
-    served_.erase(service);
-  return there;
+  if (listed) return true;
+  const std::string what = "serves " + service;
+  const bool expected = known_.count(what) > 0 || before_.count(what) > 0;
+  return (expected || looks_ % kEachLook == 0) &&
+         ros::ServiceManager::instance()->lookupServicePublication(service) != nullptr;
 }
 
 void Links::lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces) {

@@ -62,7 +62,6 @@ class Links {
   const std::string services_at_;  // asked at the start: roscpp has no port any more when it ends
   std::map<std::string, Missing> missing_, before_;
   Names known_;       // registrations that the master has had
-  Names served_;      // services of this process, as last seen
   int looks_{};       // at services
   int registered_{};  // in this look
 };
