@@ -18,7 +18,6 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.integer("lock_samples", guard.lock_samples, 0);
   section.number("lock_error", guard.lock_error, kFinitePositive);
   section.number("lock_step", guard.lock_step, {0.0, 1.0, true});
-  section.number("swing_move", guard.swing_move, {0.0, 1.0});
   section.integer("growing_swings", guard.growing_swings, 0);
   guard.lock_outputs = loop.controller->signalUse(controllerContext(loop)).followed;
   const YAML::Node fallback = section.raw("pi");

@@ -418,8 +418,6 @@ GuardCode::GuardCode(BlockParts& parts, const TsModel& model)
             "0: locks are not looked for in the exported block");
     require(guard.growing_swings == 0, where + "growing_swings",
             "0: swings are not looked for in the exported block");
-    require(guard.swing_move == 0.0, where + "swing_move",
-            "0: swings are not looked for in the exported block");
   }
   trust_ = p_.work("trust");
   square_ = p_.work("square");

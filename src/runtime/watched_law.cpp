@@ -17,7 +17,6 @@ namespace {
 constexpr double kDecayBack = 0.7;  // of the bias left by a candidate: it was wrong
 constexpr double kFloor = 1e-3;     // of an output's range: errors that always pass
 constexpr double kSwingMove = 0.1;  // of an input's range
-constexpr int kSwingRelease = 250;  // samples
 
 /// (kFloor of the range)^2; 0 without one.
 Vector floorsOf(const std::vector<SignalInfo>& outputs) {
@@ -85,7 +84,7 @@ void WatchedLaw::begin() {
   const Eigen::Index window = candidate_.params.step_samples;
   errors_ = ErrorPromise(window, floorsOf(plant_.outputs));
   outputs_ = errors_;
-  swings_.assign(plant_.inputs.size(), OscillationDetector(kSwingMove, kSwingRelease));
+  swings_.assign(plant_.inputs.size(), OscillationDetector(kSwingMove));
   state_ = CandidateState::kWatched;
   fresh_ = true;
   seen_ = taking_ = false;
@@ -269,8 +268,7 @@ bool WatchedLaw::throws(const Measurement& now, VectorRef wish) {
     const double range = limits_.upper[i] - limits_.lower[i];
     if (!std::isfinite(range) || range <= 0.0) continue;
     OscillationDetector& swing = swings_[static_cast<std::size_t>(i)];
-    swing.allow((wish[i] - now.input_applied[i]) / range);
-    swings = swings || swing.swings();
+    swings = swing.add((wish[i] - now.input_applied[i]) / range) || swings;
   }
   return swings;
 }

@@ -62,12 +62,10 @@ bool GrowingSwings::add(double value, VectorRef outputs) {
   return grow();
 }
 
-double GrowingSwings::middle() const {
-  return 0.5 * (turns_.back().value + turns_[turns_.size() - 2].value);
-}
-
-Vector GrowingSwings::middleOfOutputs() const {
-  return 0.5 * (turns_.back().outputs + turns_[turns_.size() - 2].outputs);
+void GrowingSwings::middle(double& input, Vector& outputs) const {
+  const Turn &last = turns_.back(), &before = turns_[turns_.size() - 2];
+  input = 0.5 * (last.value + before.value);
+  outputs = 0.5 * (last.outputs + before.outputs);
 }
 
 }  // namespace fpc

@@ -26,8 +26,7 @@ class GrowingSwings {
   /// allocation. @return whether they have been found at this sample.
   bool add(double value, VectorRef outputs);
   /// Once they are found: input and outputs between the newest two turns, about which they swing.
-  double middle() const;
-  Vector middleOfOutputs() const;
+  void middle(double& input, Vector& outputs) const;
 
  private:
   struct Turn {

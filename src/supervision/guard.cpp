@@ -46,7 +46,6 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
               (growing_swings >= GrowingSwings::kFewest && growing_swings <= GrowingSwings::kMost),
           "guard.growing_swings", "0, or an integer from 3 to 20");
   require(growing_swings == 0 || pi, "guard.growing_swings", "a fallback beside it, guard.pi");
-  require(swing_move >= 0.0 && swing_move <= 1.0, "guard.swing_move", "a number from 0 to 1");
   for (const Index i : lock_outputs)
     require(i >= 0 && i < n_y, "guard: outputs that the law follows", "outputs of the plant");
   if (pi) pi->validate(n_y, n_u, n_d);
@@ -70,7 +69,6 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
   if (params_.pi) pi_ = std::make_unique<PiController>(*params_.pi, limits_, plant_);
   for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
   moved_.assign(locks_.size(), true);
-  swings_.assign(locks_.size(), OscillationDetector(params_.swing_move, params_.swing_release));
   growing_.assign(locks_.size(), GrowingSwings(params_.growing_swings, n_y));
   if (params_.lock_outputs.empty())
     for (Index i = 0; i < n_y; ++i) params_.lock_outputs.push_back(i);
@@ -91,8 +89,8 @@ void GuardedController::setModel(const TsModel& model) {
 void GuardedController::reset(const Measurement& start) {
   inside_->reset(start);
   if (pi_) pi_->reset(start);
+  from_ = start;
   for (LockUpWatch& lock : locks_) lock.reset();
-  for (OscillationDetector& swing : swings_) swing.reset();
   for (GrowingSwings& swing : growing_) swing.reset();
   fallback_ = unstable_ = false;
   above_ = 0;
@@ -125,6 +123,7 @@ void GuardedController::comeBack(const Measurement& now, double trust) {
   above_ = trust >= params_.trust_high ? above_ + 1 : 0;
   if (!fallback_ || unstable_ || above_ < params_.return_samples) return;
   fallback_ = false;
+  for (GrowingSwings& swing : growing_) swing.reset();
   inside_->forget();
   inside_->reset(now);
 }
@@ -171,19 +170,6 @@ void GuardedController::shrink(double trust) {
   }
 }
 
-/// What is thrown from end to end moves less.
-void GuardedController::calm(const Measurement& now) {
-  for (Index i = 0; i < shrunk_.move.size(); ++i) {
-    const double range = limits_.upper[i] - limits_.lower[i];
-    if (!std::isfinite(range) || range <= 0.0) continue;
-    OscillationDetector& swing = swings_[static_cast<std::size_t>(i)];
-    const double share = swing.allow((proposed_[i] - now.input_applied[i]) / range);
-    if (!swing.swings()) continue;
-    shrunk_.move[i] = std::min(shrunk_.move[i], share * range);
-    view_.swinging = true;
-  }
-}
-
 /// Limits that are drawn in are reached by allowed moves only.
 void GuardedController::narrow(const Vector& before) {
   for (Index i = 0; i < before.size(); ++i) {
@@ -196,21 +182,25 @@ void GuardedController::narrow(const Vector& before) {
   }
 }
 
+/// Whether the law swings an input further each time; from_ is then the middle of the swing.
+bool GuardedController::swingsGrow(const Measurement& now) {
+  bool grow = false;
+  for (std::size_t i = 0; i < growing_.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    if (!growing_[i].add(now.input_applied[k], now.outputs)) continue;
+    if (!grow) from_ = now;
+    growing_[i].middle(from_.input_applied[k], from_.outputs);
+    grow = true;
+  }
+  return grow;
+}
+
 /// Where the model has no data, and for good once an input swings further each time.
 void GuardedController::fallBack(const Measurement& now, bool outside) {
-  if (!pi_) return;
-  from_ = now;
-  bool grows = false;
-  for (std::size_t i = 0; i < growing_.size(); ++i) {
-    double& input = from_.input_applied[static_cast<Index>(i)];
-    if (!growing_[i].add(input, now.outputs)) continue;
-    input = growing_[i].middle();
-    from_.outputs = growing_[i].middleOfOutputs();
-    grows = true;
-  }
-  const bool begins = (grows && !unstable_) || (outside && !fallback_);
-  unstable_ = unstable_ || grows;
-  if (!begins) return;
+  if (!pi_ || fallback_) return;
+  unstable_ = swingsGrow(now);
+  if (!unstable_ && !outside) return;
+  if (!unstable_) from_ = now;
   fallback_ = begins_ = true;
   pi_->reset(from_);
 }
@@ -232,7 +222,6 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   shrink(std::min(trust, fallback_ ? 1.0 : view_.near));
   bool drawn = false;
   proposed_ = output.input;
-  calm(now);
   narrow(now.input_applied);
   for (Index i = 0; i < output.input.size(); ++i) {
     const double proposed = proposed_[i];
@@ -257,7 +246,6 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   if (!view_.acting || fallback_) return;
   output.source = ActionSource::kGuarded;
   if (drawn) output.events.add({EventCode::kLockUp});
-  if (view_.swinging) output.events.add({EventCode::kOscillation});
 }
 
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,

@@ -11,7 +11,6 @@
 #include "supervision/growing_swings.hpp"
 #include "supervision/guard_params.hpp"
 #include "supervision/horizon_trust.hpp"
-#include "supervision/oscillation_detector.hpp"
 
 namespace fpc {
 
@@ -24,7 +23,6 @@ struct GuardView {
   double ahead{1.0};     ///< least trust over the horizon of what the law expects
   double near{1.0};      ///< of outputs and disturbances, GuardParams::look_ahead samples of a plan
   bool locked{false};    ///< some input is locked up
-  bool swinging{false};  ///< some input is thrown from end to end
   bool acting{false};    ///< the input is not the law's
 };
 
@@ -75,7 +73,7 @@ class LockUpWatch {
   Eigen::Index known_{};
 };
 
-/// The law `inside`, and seven rules:
+/// The law `inside`, and five rules:
 /// - trust at the measured outputs, disturbances and the input in force, and at the input that the
 ///   law wants: the smaller is said; what is done depends on outputs and disturbances only
 ///   (processTrustOf), as the bounds say which inputs are allowed, and where the law shows its plan
@@ -86,10 +84,8 @@ class LockUpWatch {
 ///   `horizon_least` after the longest dead time of an input do;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in, if the
 ///   model knows the input: others stand where the plant has them;
-/// - an input that the law throws from end to end of its range (see OscillationDetector) moves
-/// less;
-/// - where some input swings further each time (see GrowingSwings) the law does not hold this
-/// plant: the PI acts until the law begins anew (reset());
+/// - where the law swings an input further each time (see GrowingSwings) it does not hold this
+///   plant: the PI acts until the law begins anew (reset());
 /// - so the guard narrows the limits of u(k): the law's input is put inside them (source `guarded`,
 ///   and an event says why), and the prediction hands them to an optimizer; where the PI acts the
 ///   source is `fallback` and there is no prediction.
@@ -116,7 +112,7 @@ class GuardedController final : public ControllerAround {
   WorstError worstError(const Measurement& now, const SetpointSource& setpoint) const;
   double trustForMoves(const Measurement& now);
   void shrink(double trust);
-  void calm(const Measurement& now);
+  bool swingsGrow(const Measurement& now);
   void fallBack(const Measurement& now, bool outside);
   void narrow(const Vector& before);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
@@ -131,7 +127,6 @@ class GuardedController final : public ControllerAround {
   std::unique_ptr<PiController> pi_;
   ControllerOutput pi_output_;
   std::vector<LockUpWatch> locks_;           // one per input
-  std::vector<OscillationDetector> swings_;  // one per input
   std::vector<GrowingSwings> growing_;       // one per input
   std::vector<bool> moved_;                  // by input: the model knows it, so the law may move it
   TsModel model_;

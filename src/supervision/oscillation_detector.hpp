@@ -8,29 +8,24 @@ namespace fpc {
 /// Watches what a law asks of one input, as moves from the applied one in parts of the range. Three
 /// changes of direction between moves above `large` within twelve samples are a swing: around a
 /// change of the gain's sign, or at a setpoint that the model holds for possible and the plant does
-/// not. The third and every further turn halves the moves that are allowed, from an eighth of the
-/// range down to a fiftieth; while they are less than all, wishes for more than them count as
-/// large. Without a turn they open again by half in `release` samples, and by half in every sample
-/// once all wishes of more than a window were large and one way: that is no swing.
+/// not.
 class OscillationDetector {
  public:
-  /// @param large in parts of the range; 0 never finds a swing.
-  OscillationDetector(double large, int release);
-  void reset();
-  /// One sample: the wish minus the applied input, in parts of the range.
-  /// @return the largest move allowed now, in the same parts; 1 while nothing swings.
-  double allow(double wish);
-  bool swings() const { return allowed_ < 1.0; }
+  /// @param large in parts of the range, > 0.
+  explicit OscillationDetector(double large) : large_(large) {}
+  void reset() { *this = OscillationDetector(large_); }
+  /// One sample: the wish minus the applied input, in parts of the range; what is not finite is
+  /// passed over. @return whether there has been a swing since reset().
+  bool add(double wish);
 
  private:
   static constexpr int kWindow = 12;
 
-  double large_, opening_;
-  double allowed_{1.0};
-  int one_way_{0};                ///< samples in a row of large wishes in that direction
+  double large_;
   int last_{0};                   ///< direction of the newest large wish ...
   int since_{kWindow};            ///< ... and how long ago
   int turned_[kWindow]{}, at_{};  ///< a ring: 1 where the direction changed
+  bool found_{false};
 };
 
 }  // namespace fpc

@@ -254,7 +254,6 @@ std::map<std::string, std::string> structDefaults() {
           {"guard.lock_error", exactText(loop.guard.lock_error)},
           {"guard.lock_step", exactText(loop.guard.lock_step)},
           {"guard.growing_swings", std::to_string(loop.guard.growing_swings)},
-          {"guard.swing_move", exactText(loop.guard.swing_move)},
           {"controller.loops[].anti_windup", wordOf(pi.anti_windup)},
           {"controller.loops[].start", wordOf(pi.start)},
           {"controller.seed", std::to_string(ExcitationParams{}.seed)},

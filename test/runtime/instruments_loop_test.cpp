@@ -1,4 +1,5 @@
 // Drives and instruments that the loop file names, in a model of the process alone.
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/loop_fixture.hpp"
@@ -57,6 +58,50 @@ TEST(ModelInstruments, TheLawToBeginWithBearsThoseThatNobodyNames) {
     more.emplace_back("model.instruments", "included");
     EXPECT_LT(iseOf("cstr_tracking_robust", more), baseline) << more.front().first;
   }
+}
+
+bool growsIn(const RunRecord& run) {
+  const auto grows = [](const Event& event) { return event.code == EventCode::kOscillationGrows; };
+  return std::any_of(run.samples.begin(), run.samples.end(), [&](const SampleRecord& sample) {
+    return std::any_of(sample.events.begin(), sample.events.end(), grows);
+  });
+}
+
+Overrides noisy(double std, int seed, const Overrides& more) {
+  Overrides all{{"noise.std.CA", std::to_string(std)}, {"noise.seed", std::to_string(seed)}};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// A bold law swings further each time where nobody names the valve: the PI behind it acts then.
+TEST(ModelInstruments, ABoldLawThatDoesNotBearThemIsTakenOff) {
+  int found = 0, near = 0;
+  constexpr int kRuns = 12;
+  for (int seed = 51; seed < 51 + kRuns; ++seed) {
+    Overrides more{{"actuator.lag.q_c.t90_s", "5"}};
+    const auto iseUnder = [&](const std::string& name, bool& grows) {
+      const LoopFile loop = readLoop(name, noisy(1e-4, seed, more));
+      const RunRecord run = runLoop(loop);
+      grows = growsIn(run);
+      return summarize(loop, run, 0.0).outputs[0].ise;
+    };
+    bool grows = false;
+    const double baseline = iseUnder("cstr_tracking_pi_best", grows);
+    more.emplace_back("model.instruments", "included");
+    const double watched = iseUnder("cstr_tracking_watched", grows);
+    found += grows ? 1 : 0;
+    near += watched <= 1.5 * baseline ? 1 : 0;
+  }
+  EXPECT_EQ(found, kRuns);
+  EXPECT_GE(near, kRuns - 1);
+}
+
+TEST(ModelInstruments, ALawThatBearsThemIsLeftInPeace) {
+  int found = 0;
+  for (int seed = 101; seed < 141; ++seed)  // the noise that the loop is made for, and five times it
+    for (const double std : {1e-4, 5e-4})
+      found += growsIn(runLoop(readLoop("cstr_tracking_watched", noisy(std, seed, {})))) ? 1 : 0;
+  EXPECT_LE(found, 1) << "8 of 1,000 at five times the noise";
 }
 
 /// The first two pairs of setpoints.

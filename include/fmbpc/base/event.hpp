@@ -44,7 +44,6 @@ enum class EventCode : std::uint8_t {
   kNoAllowedInput,
   kReferenceHeldBack,
   kLockUp,
-  kOscillation,
   kOscillationGrows,
   kQpNotSolved,
   kBoundsConflict,
