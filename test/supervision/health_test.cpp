@@ -134,21 +134,6 @@ TEST(Valves, ABandIsCertainOnlyAfterTenTurns) {
   }
 }
 
-TEST(Valves, ASignalAtRestShowsNone) {
-  // one step, then rounding
-  const std::vector<double> e = noise(4000, 9);
-  std::vector<double> u(e.size()), y(e.size(), 0.0);
-  double x = 0.0;
-  StickingValve valve(2e-11, 0.0);
-  for (std::size_t k = 1; k < u.size(); ++k) {
-    y[k] = 0.9 * y[k - 1] + x + 1e-13 * e[k];
-    u[k] = k < 20 ? 50.0 : 1e-11 * (u[k - 1] / 1e-11 * 0.7 + 3.0 * e[k]);
-    x = valve.move(u[k]);
-  }
-  const ValveFit fit = fitValve(u, y, 1, 1);
-  EXPECT_FALSE(fit.plays || fit.sticks);
-}
-
 TEST(SensorFaultsOf, AStepOfTheLoadIsNoSpike) {
   // as a loop answers it: up at once, back in a few samples
   std::vector<double> y(1000, 0.0);

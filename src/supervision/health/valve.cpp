@@ -16,7 +16,6 @@ constexpr double kMemories[] = {6.0, 15.0, 40.0, 100.0};  // of smoothed pasts [
 constexpr int kSmoothed = 2 * static_cast<int>(std::size(kMemories));
 constexpr double kBands[] = {0.1, 0.15, 0.2, 0.27, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92, 1.0};
 constexpr double kLeastF = 8.5, kLeastValveShare = 0.05, kLeastJumpF = 10.0;
-constexpr double kLeastRange = 1e-3;  // of its swing, that a signal not at rest moves in
 constexpr Eigen::Index kFewest = 1000;
 constexpr int kFewestTurns = 10;
 
@@ -242,8 +241,7 @@ ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& 
   const std::vector<double> finite = finiteOnly(signal);
   if (finite.size() < static_cast<std::size_t>(kFewest)) return fit;
   const double range = sampleQuantile(finite, 0.99) - sampleQuantile(finite, 0.01);
-  const auto [least, most] = std::minmax_element(finite.begin(), finite.end());
-  if (!(range > kLeastRange * (*most - *least))) return fit;
+  if (!(range > 0.0)) return fit;
   const int lags = std::clamp(delay + 4, 5, 20);
   const std::vector<double> coarse = blockMeans(signal, factor), answer = blockMeans(y, factor);
   const ValveRegression regression(coarse, answer, lags);
