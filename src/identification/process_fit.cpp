@@ -19,6 +19,7 @@ constexpr Index kFewestRows = 30;
 constexpr double kStartPole = 0.9;  // of the noise while starts are sought
 constexpr double kGridRatio = 1.7;  // of the lags that are tried first
 constexpr int kFitIterations = 40;
+constexpr double kFreeTerm = 2.0;      // of the noise, by Akaike's criterion
 constexpr double kWorthwhile = 6.0;    // by which Schwarz's criterion must fall
 constexpr double kWorthLead = 18.0;    // likewise, for the best of some hundred starts
 constexpr double kShortestLag = 0.15;  // of a sample
@@ -64,9 +65,10 @@ class Fitter {
     for (const ProcessKind kind : params_.kinds) {
       Candidate c = start(kind);
       if (!refine(c)) continue;
-      const double value = criterion(c);
-      // Another kind than stable must be worth it.
-      const double asked = kind == ProcessKind::kStable ? 0.0 : kWorthwhile;
+      const double value = freeCriterion(c);
+      // Another kind than stable must be worth it, unless all lags are an eighth of the record.
+      double asked = kind == ProcessKind::kStable ? 0.0 : kWorthwhile;
+      if (best && kind == ProcessKind::kIntegrating && endsNowhere(*best)) asked = -kWorthwhile;
       if (value + asked < least) {
         least = value;
         best = c;
@@ -79,6 +81,17 @@ class Fitter {
   }
 
  private:
+  /// The record does not show that the effects of the inputs come to an end.
+  bool endsNowhere(const Candidate& c) const {
+    bool any = false;
+    for (std::size_t j = 0; j < c.elements.size(); ++j) {
+      if (c.shapes[j] == kNone) continue;
+      any = true;
+      if (c.elements[j].time_constant < 0.5 * highLag()) return false;
+    }
+    return any && c.kind == ProcessKind::kStable;
+  }
+
   // ---- what a candidate makes of the record
 
   double sharedPole(const Candidate& c) const {
@@ -419,21 +432,23 @@ class Fitter {
     const auto n = static_cast<double>(rows_.size());
     return n * std::log(std::max(cost, 1e-300) / n);
   }
-  double criterion(const Candidate& c) const {
-    const auto n = static_cast<double>(rows_.size());
+  double schwarz() const { return std::log(static_cast<double>(rows_.size())); }
+  /// `price`: of a term of the noise.
+  double criterion(const Candidate& c, double price) const {
     return logCost(errorsOf(c, residualOf(c)).squaredNorm()) +
-           static_cast<double>(shapeParameters(c) + c.noise.size() + 1) * std::log(n);
+           static_cast<double>(shapeParameters(c) + 1) * schwarz() +
+           static_cast<double>(c.noise.size()) * price;
   }
+  double criterion(const Candidate& c) const { return criterion(c, schwarz()); }
 
-  void chooseNoise(Candidate& c) const {
+  void chooseNoise(Candidate& c, double price) const {
     const Vector v = residualOf(c);
-    const double n = static_cast<double>(rows_.size());
     double least = std::numeric_limits<double>::infinity();
     Index chosen = 0;
     for (Index terms = 0; terms <= params_.most_noise_terms; ++terms) {
       fitNoise(c, v, terms);
       const double value =
-          logCost(errorsOf(c, v).squaredNorm()) + static_cast<double>(terms) * std::log(n);
+          logCost(errorsOf(c, v).squaredNorm()) + static_cast<double>(terms) * price;
       if (value < least - 1e-9) {
         least = value;
         chosen = terms;
@@ -542,10 +557,20 @@ class Fitter {
     return true;
   }
 
+  /// With as many terms of the noise as Akaike's criterion asks for: with Schwarz's fewer an
+  /// integrator, whose noise is differenced, loses against a lag.
+  double freeCriterion(Candidate c) {
+    for (int pass = 0; pass < 2; ++pass) {
+      chooseNoise(c, kFreeTerm);
+      if (!descend(c)) break;
+    }
+    return criterion(c, kFreeTerm);
+  }
+
   bool refine(Candidate& c) {
     if (static_cast<Index>(rows_.size()) < kFewestRows - params_.most_noise_terms) return false;
     for (int pass = 0; pass < 3; ++pass) {
-      chooseNoise(c);
+      chooseNoise(c, schwarz());
       if (!descend(c)) return false;
     }
     double value = criterion(c);
@@ -587,7 +612,7 @@ class Fitter {
       next.shapes[j] = shape;
       next.elements[j] = e;
       if (!descend(next)) continue;
-      chooseNoise(next);
+      chooseNoise(next, schwarz());
       if (!descend(next)) continue;
       const double criterion_next = criterion(next);
       if (criterion_next < least) {
@@ -675,11 +700,15 @@ class Fitter {
     }
     const double few = static_cast<double>(params_.blocks) / (params_.blocks - 1.0);
     const Matrix plain = variance * inverse, blocked = few * inverse * B * inverse;
-    Vector stretch(all);
-    for (Index i = 0; i < all; ++i)
-      stretch[i] = std::sqrt(std::max(1.0, blocked(i, i) / std::max(plain(i, i), 1e-300)));
-    const Matrix covariance =
-        (stretch.asDiagonal() * plain * stretch.asDiagonal()).topLeftCorner(shape, shape);
+    const auto larger = [&](double factor) -> Matrix {
+      Vector stretch(all);
+      for (Index i = 0; i < all; ++i)
+        stretch[i] =
+            std::max(1.0, factor * std::sqrt(blocked(i, i) / std::max(plain(i, i), 1e-300)));
+      return (stretch.asDiagonal() * plain * stretch.asDiagonal()).topLeftCorner(shape, shape);
+    };
+    // Few blocks bound as Student's t does.
+    const double t = studentBound(0.95, params_.blocks - 1.0) / normalBound(0.95);
     ProcessFit fit;
     fit.kind = c.kind;
     fit.noise = c.noise;
@@ -687,8 +716,8 @@ class Fitter {
     fit.rows = e.size();
     fit.input = mean_;
     rest(c, v, fit);
-    bounds(c, covariance, variance, fit);
-    draw(c, covariance, fit);
+    bounds(c, larger(t), variance, fit);
+    draw(c, larger(1.0), fit);
     return fit;
   }
 

@@ -127,6 +127,25 @@ TEST(ProcessFit, KnowsAnIntegratorAndAnUnstablePole) {
   EXPECT_NEAR(second.elements[0].element.time_constant, -30.0, 6.0);
 }
 
+// Under a PI and a drift a long lag is hardly told from an integrator.
+TEST(ProcessFit, AnEffectWhoseEndTheRecordDoesNotShowIsThatOfAnIntegrator) {
+  ProcessElement e = lag(-0.1, 0.0, 1.0, 3.3);
+  e.integrating = true;
+  constexpr int kRecords = 60;
+  int kinds = 0, gains = 0, delays = 0;
+  for (int s = 0; s < kRecords; ++s) {
+    const Data d = record(e, -0.5, -0.012, 1.0, {0.12, 0.026, 0.06, 0.001}, 1200, 100 + s);
+    const ProcessFit fit = fitProcess(d.u, d.y, 1.0);
+    const ElementEstimate& found = fit.elements[0];
+    kinds += fit.kind == ProcessKind::kIntegrating;
+    gains += std::abs(found.element.gain - e.gain) <= found.gain_bound;
+    delays += std::abs(found.element.dead_time - e.dead_time) <= found.dead_time_bound;
+  }
+  EXPECT_GE(kinds, 52);
+  EXPECT_GE(gains, 52);  // with 95 % fewer have a chance of 1 in 1,000
+  EXPECT_GE(delays, 52);
+}
+
 TEST(ProcessFit, AnInputThatDoesNothingIsNotSeen) {
   const ProcessElement e = lag(2.0, 12.0, 3.0);
   Data d = record(e, 0.0, 0.0, 1.0, {0.05}, 400, 6);
