@@ -65,10 +65,11 @@ class Fitter {
     for (const ProcessKind kind : params_.kinds) {
       Candidate c = start(kind);
       if (!refine(c)) continue;
-      const double value = freeCriterion(c);
+      const double value = params_.passing ? criterion(c) : freeCriterion(c);
       // Another kind than stable must be worth it, unless all lags are an eighth of the record.
       double asked = kind == ProcessKind::kStable ? 0.0 : kWorthwhile;
-      if (best && kind == ProcessKind::kIntegrating && endsNowhere(*best)) asked = -kWorthwhile;
+      if (!params_.passing && kind == ProcessKind::kIntegrating && best && endsNowhere(*best))
+        asked = -kWorthwhile;
       if (value + asked < least) {
         least = value;
         best = c;
@@ -708,7 +709,8 @@ class Fitter {
       return (stretch.asDiagonal() * plain * stretch.asDiagonal()).topLeftCorner(shape, shape);
     };
     // Few blocks bound as Student's t does.
-    const double t = studentBound(0.95, params_.blocks - 1.0) / normalBound(0.95);
+    const double t =
+        params_.passing ? 1.0 : studentBound(0.95, params_.blocks - 1.0) / normalBound(0.95);
     ProcessFit fit;
     fit.kind = c.kind;
     fit.noise = c.noise;

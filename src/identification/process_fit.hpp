@@ -21,6 +21,8 @@ struct ProcessFitParams {
   int ensemble{20};              ///< drawn for ProcessFit::ensemble
   std::vector<ProcessKind> kinds{ProcessKind::kStable, ProcessKind::kIntegrating,
                                  ProcessKind::kUnstable};  ///< that are tried
+  /// While a test goes on: kinds by Schwarz's criterion alone, normal bounds.
+  bool passing{false};
   std::uint64_t seed{1};
   void validate() const;  ///< @throws InputError naming the field
 };

@@ -126,6 +126,7 @@ void PlantTest::know() {
   std::vector<ProcessFit> fits;
   ProcessFitParams p;
   p.ensemble = 0;
+  p.passing = true;
   p.seed = params_.seed;
   try {
     for (Index i = 0; i < n_y_; ++i)
