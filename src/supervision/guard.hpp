@@ -18,12 +18,12 @@ class PiController;
 
 /// What the guard sees at one sample.
 struct GuardView {
-  double trust{1.0};     ///< least of now and of what the law wants
-  bool outside{false};   ///< trust below GuardParams::trust_low
-  double ahead{1.0};     ///< least trust over the horizon of what the law expects
-  double near{1.0};      ///< of outputs and disturbances, GuardParams::look_ahead samples of a plan
-  bool locked{false};    ///< some input is locked up
-  bool acting{false};    ///< the input is not the law's
+  double trust{1.0};    ///< least of now and of what the law wants
+  bool outside{false};  ///< trust below GuardParams::trust_low
+  double ahead{1.0};    ///< least trust over the horizon of what the law expects
+  double near{1.0};     ///< of outputs and disturbances, GuardParams::look_ahead samples of a plan
+  bool locked{false};   ///< some input is locked up
+  bool acting{false};   ///< the input is not the law's
 };
 
 /// The largest error that counts.
@@ -126,9 +126,9 @@ class GuardedController final : public ControllerAround {
   PlantInfo plant_;
   std::unique_ptr<PiController> pi_;
   ControllerOutput pi_output_;
-  std::vector<LockUpWatch> locks_;           // one per input
-  std::vector<GrowingSwings> growing_;       // one per input
-  std::vector<bool> moved_;                  // by input: the model knows it, so the law may move it
+  std::vector<LockUpWatch> locks_;      // one per input
+  std::vector<GrowingSwings> growing_;  // one per input
+  std::vector<bool> moved_;             // by input: the model knows it, so the law may move it
   TsModel model_;
   bool known_{false};  // the model says where its data were
   bool fallback_{false};

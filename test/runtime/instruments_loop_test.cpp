@@ -98,8 +98,8 @@ TEST(ModelInstruments, ABoldLawThatDoesNotBearThemIsTakenOff) {
 
 TEST(ModelInstruments, ALawThatBearsThemIsLeftInPeace) {
   int found = 0;
-  for (int seed = 101; seed < 141;
-       ++seed)  // the noise that the loop is made for, and five times it
+  // the noise that the loop is made for, and five times it
+  for (int seed = 101; seed < 141; ++seed)
     for (const double std : {1e-4, 5e-4})
       found += growsIn(runLoop(readLoop("cstr_tracking_watched", noisy(std, seed, {})))) ? 1 : 0;
   EXPECT_LE(found, 1) << "8 of 1,000 at five times the noise";
