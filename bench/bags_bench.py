@@ -23,8 +23,8 @@ def burn():
 
 def judged(env, loop, folder):
     """What is wrong with the bag of one run, in words; empty: nothing."""
-    words = ["roslaunch", "--wait", "fmbpc", "loop.launch", f"loop:={loop}", "pace:=lockstep", "record:=true", "draw:=false", f"out:={folder}"]
-    run = subprocess.run(words, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=600, check=False)
+    words = launching.loop_words(loop, folder)
+    run = subprocess.run(["roslaunch", "--wait", *words, "record:=true"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=600, check=False)
     bags = sorted(pathlib.Path(folder).rglob("*.bag"))
     if run.returncode or len(bags) != 1:
         return f"launch ended with {run.returncode}, {len(bags)} bags"
