@@ -129,6 +129,7 @@ struct LoopFile {
   std::shared_ptr<const ControllerConfig> controller;  ///< never null in a loop that was read
   Vector disturbance_nominal;                          ///< n_d, of the measured disturbances
   GuardParams guard;                                   ///< around a law with a model
+  std::shared_ptr<const ControllerConfig> fallback;    ///< of the guard; null: none
   PlausibilityParams plausibility;                     ///< what a measurement may be
   StuckParams stuck;            ///< section plausibility: inputs that do not follow
   EstimatorParams estimator;    ///< around a law with a model; without outputs: none

@@ -1,7 +1,6 @@
 // Section `guard`: what a law does outside its model's data, and when it is locked up.
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
-#include "control/pi/pi_reader.hpp"
 
 namespace fpc {
 
@@ -20,16 +19,15 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.number("lock_step", guard.lock_step, {0.0, 1.0, true});
   section.integer("growing_swings", guard.growing_swings, 0);
   guard.lock_outputs = loop.controller->signalUse(controllerContext(loop)).followed;
-  const YAML::Node fallback = section.raw("pi");
-  if (fallback.IsDefined() && !fallback.IsNull()) {
-    YamlSection pi = section.section("pi");
-    guard.pi = std::make_shared<const PiParams>(readPi(pi, controllerContext(loop)));
-    pi.finish();
+  bool no_fallback = false;
+  YamlSection fallback = section.sectionOrOff("fallback", no_fallback);
+  if (section.has("fallback") && !no_fallback) {
+    loop.fallback = readController(fallback, controllerContext(loop));
+    if (loop.fallback->type().open_loop)
+      fallback.fail("type", "a controller that follows setpoints");
   }
   checked(section, [&] {
-    guard.validate(static_cast<Eigen::Index>(names.outputs.size()),
-                   static_cast<Eigen::Index>(names.inputs.size()),
-                   static_cast<Eigen::Index>(names.seen_disturbances.size()));
+    guard.validate(static_cast<Eigen::Index>(names.outputs.size()), loop.fallback != nullptr);
   });
   section.finish();
 }

@@ -78,6 +78,7 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
     loop.model = matchToLoop(loop.model, loop);
     if (instruments_missing) loop.model = withInstruments(std::move(loop.model), loop.simulation);
     loop.controller->checkModel(loop.model, controllerContext(loop));
+    if (loop.fallback) loop.fallback->checkModel(loop.model, controllerContext(loop));
   } catch (const InputError& e) {
     throw InputError(section.where("file") + ": " + e.what());
   }

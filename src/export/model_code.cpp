@@ -412,7 +412,7 @@ GuardCode::GuardCode(BlockParts& parts, const TsModel& model)
   const GuardParams& guard = parts.loop.guard;
   const std::string where = parts.loop.name + ": guard.";
   if (guard.enabled) {
-    require(!guard.pi, where + "pi",
+    require(!parts.loop.fallback, where + "fallback",
             "no fallback: the exported block has none but its substitutes");
     require(guard.lock_samples == 0, where + "lock_samples",
             "0: locks are not looked for in the exported block");

@@ -12,10 +12,12 @@ namespace {
 
 /// The law, guarded if it predicts with a model.
 std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
-  std::unique_ptr<Controller> law = loop.controller->make(controllerContext(loop));
+  const ControllerContext context = controllerContext(loop);
+  std::unique_ptr<Controller> law = loop.controller->make(context);
   if (!loop.guard.enabled || !law->needsModel()) return law;
-  return std::make_unique<GuardedController>(std::move(law), loop.guard,
-                                             loop.simulation.actuator.limits, loop.plant_info);
+  return std::make_unique<GuardedController>(
+      std::move(law), loop.fallback ? loop.fallback->make(context) : nullptr, loop.guard,
+      loop.simulation.actuator.limits, loop.plant_info);
 }
 
 /// The guarded law, on estimates of what is not measured.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "control/pi/pi.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/model/model_match.hpp"
@@ -32,7 +31,7 @@ bool isLaws(ActionSource source) {
 
 }  // namespace
 
-void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
+void GuardParams::validate(Index n_y, bool has_fallback) const {
   require(trust_low >= 0.0 && trust_low <= 1.0, "guard.trust_low", "a number from 0 to 1");
   require(trust_high >= trust_low && trust_high <= 1.0, "guard.trust_high",
           "a number from trust_low to 1");
@@ -45,13 +44,13 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
   require(growing_swings == 0 ||
               (growing_swings >= GrowingSwings::kFewest && growing_swings <= GrowingSwings::kMost),
           "guard.growing_swings", "0, or an integer from 3 to 20");
-  require(growing_swings == 0 || pi, "guard.growing_swings", "a fallback beside it, guard.pi");
+  require(growing_swings == 0 || has_fallback, "guard.growing_swings", "guard.fallback beside it");
   for (const Index i : lock_outputs)
     require(i >= 0 && i < n_y, "guard: outputs that the law follows", "outputs of the plant");
-  if (pi) pi->validate(n_y, n_u, n_d);
 }
 
-GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardParams params,
+GuardedController::GuardedController(std::unique_ptr<Controller> inside,
+                                     std::unique_ptr<Controller> fallback, GuardParams params,
                                      InputLimits limits, PlantInfo plant)
     : ControllerAround(std::move(inside), "guard"),
       plan_(dynamic_cast<PlanView*>(inside_.get())),
@@ -60,13 +59,13 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
       shrunk_(limits_),
       lower_(limits_.lower),
       upper_(limits_.upper),
-      plant_(std::move(plant)) {
+      plant_(std::move(plant)),
+      fallback_(std::move(fallback)) {
   const Index n_y = countOf(plant_.outputs), n_u = countOf(plant_.inputs);
-  params_.validate(n_y, n_u, countOf(plant_.disturbances));
+  params_.validate(n_y, fallback_ != nullptr);
   limits_.validate(n_u);
   if (plan_ && params_.horizon_least > 0)
     plan_->setTrustThreshold(params_.trust_low, params_.horizon_least);
-  if (params_.pi) pi_ = std::make_unique<PiController>(*params_.pi, limits_, plant_);
   for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
   moved_.assign(locks_.size(), true);
   growing_.assign(locks_.size(), GrowingSwings(params_.growing_swings, n_y));
@@ -76,10 +75,24 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
   refreshSignals();
 }
 
-GuardedController::~GuardedController() = default;
+void GuardedController::forget() {
+  inside_->forget();
+  if (fallback_) fallback_->forget();
+}
+
+void GuardedController::lookOn(const Measurement& now) {
+  inside_->lookOn(now);
+  if (fallback_) fallback_->lookOn(now);
+}
+
+bool GuardedController::expect(std::uint32_t k, Index disturbance, VectorRef ahead) {
+  const bool used = fallback_ && fallback_->expect(k, disturbance, ahead);
+  return inside_->expect(k, disturbance, ahead) || used;
+}
 
 void GuardedController::setModel(const TsModel& model) {
   inside_->setModel(model);
+  if (fallback_) fallback_->setModel(model);
   model_ = matchToPlant(model, plant_);
   known_ = knowsDomain(model_);
   for (std::size_t i = 0; i < moved_.size(); ++i)
@@ -88,11 +101,11 @@ void GuardedController::setModel(const TsModel& model) {
 
 void GuardedController::reset(const Measurement& start) {
   inside_->reset(start);
-  if (pi_) pi_->reset(start);
+  if (fallback_) fallback_->reset(start);
   from_ = start;
   for (LockUpWatch& lock : locks_) lock.reset();
   for (GrowingSwings& swing : growing_) swing.reset();
-  fallback_ = unstable_ = false;
+  fallen_back_ = unstable_ = false;
   above_ = 0;
   ahead_.reset();
   view_ = {};
@@ -121,8 +134,8 @@ void GuardedController::lookAhead(const Measurement& now, const ControllerOutput
 /// of the process where its model knows nothing is forgotten.
 void GuardedController::comeBack(const Measurement& now, double trust) {
   above_ = trust >= params_.trust_high ? above_ + 1 : 0;
-  if (!fallback_ || unstable_ || above_ < params_.return_samples) return;
-  fallback_ = false;
+  if (!fallen_back_ || unstable_ || above_ < params_.return_samples) return;
+  fallen_back_ = false;
   for (GrowingSwings& swing : growing_) swing.reset();
   inside_->forget();
   inside_->reset(now);
@@ -195,31 +208,40 @@ bool GuardedController::swingsGrow(const Measurement& now) {
   return grow;
 }
 
-/// Where the model has no data, and for good once an input swings further each time.
+/// Where the model has no data, and for good once an input swings further each time. A fallback
+/// that begins in a swing begins from its middle, but one with a model follows the process, which
+/// is not there.
 void GuardedController::fallBack(const Measurement& now, bool outside) {
-  if (!pi_ || fallback_) return;
+  if (!fallback_ || fallen_back_) return;
   unstable_ = swingsGrow(now);
   if (!unstable_ && !outside) return;
-  if (!unstable_) from_ = now;
-  fallback_ = begins_ = true;
-  pi_->reset(from_);
+  if (!unstable_ || fallback_->needsModel()) from_ = now;
+  fallen_back_ = begins_ = true;
+  fallback_->reset(from_);
+}
+
+void GuardedController::askFallback(const Measurement& now, const SetpointSource& setpoint,
+                                    ControllerOutput& output) {
+  fallback_output_.begin();
+  fallback_->step(begins_ ? from_ : now, setpoint, fallback_output_);
+  begins_ = false;
+  asked_ = true;
+  output.input = fallback_output_.input;
+  output.ok = fallback_output_.ok;
+  for (const Notice& notice : fallback_output_.events) output.events.add(notice);
 }
 
 double GuardedController::trustForMoves(const Measurement& now) {
-  if (fallback_ || !known_) return 1.0;
+  if (fallen_back_ || !known_) return 1.0;
   place(now, now.input_applied, point_);
   return processTrustOf(model_, point_);
 }
 
 void GuardedController::act(const Measurement& now, const SetpointSource& setpoint,
                             ControllerOutput& output) {
-  if (fallback_) {
-    pi_->step(begins_ ? from_ : now, setpoint, pi_output_);
-    begins_ = false;
-    output.input = pi_output_.input;
-  }
+  if (fallen_back_) askFallback(now, setpoint, output);
   const double trust = trustForMoves(now);
-  shrink(std::min(trust, fallback_ ? 1.0 : view_.near));
+  shrink(std::min(trust, fallen_back_ ? 1.0 : view_.near));
   bool drawn = false;
   proposed_ = output.input;
   narrow(now.input_applied);
@@ -238,12 +260,12 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     output.prediction.input_lower = lower_;
     output.prediction.input_upper = upper_;
   }
-  if (fallback_) {
+  if (fallen_back_) {
     output.source = ActionSource::kFallback;
     output.predictive = false;
     view_.acting = true;
   }
-  if (!view_.acting || fallback_) return;
+  if (!view_.acting || fallen_back_) return;
   output.source = ActionSource::kGuarded;
   if (drawn) output.events.add({EventCode::kLockUp});
 }
@@ -251,9 +273,10 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,
                              ControllerOutput& output) {
   view_ = {};
+  asked_ = false;
   const double present = trustAt(now, now.input_applied);
   const double process = known_ ? processTrustOf(model_, point_) : 1.0;
-  if (pi_) comeBack(now, process);
+  if (fallback_) comeBack(now, process);
   watchLocks(now, setpoint);
   inside_->step(now, setpoint, output);
   lookAhead(now, output);
@@ -266,6 +289,7 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
   }
   if (unstable_) output.events.add({EventCode::kOscillationGrows});
   if (process < params_.trust_low) output.events.add({EventCode::kOutsideModel});
+  if (fallback_ && !asked_) fallback_->lookOn(now);
   refreshSignals();
 }
 

@@ -14,8 +14,6 @@
 
 namespace fpc {
 
-class PiController;
-
 /// What the guard sees at one sample.
 struct GuardView {
   double trust{1.0};    ///< least of now and of what the law wants
@@ -78,29 +76,32 @@ class LockUpWatch {
 ///   law wants: the smaller is said; what is done depends on outputs and disturbances only
 ///   (processTrustOf), as the bounds say which inputs are allowed, and where the law shows its plan
 ///   (PlanView) on the least of it over `look_ahead` samples: between trust_high and trust_low
-///   moves shrink from half the range to `least_move`; below trust_low at present a PI, if there is
-///   one, acts (bumplessly) until trust has been above trust_high for `return_samples`;
+///   moves shrink from half the range to `least_move`; below trust_low at present the fallback, if
+///   there is one, acts (bumplessly) until trust has been above trust_high for `return_samples`;
 /// - errors of a plan beyond the samples at which the model is trusted do not count, but the first
 ///   `horizon_least` after the longest dead time of an input do;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in, if the
 ///   model knows the input: others stand where the plant has them;
 /// - where the law swings an input further each time (see GrowingSwings) it does not hold this
-///   plant: the PI acts until the law begins anew (reset());
+///   plant: the fallback acts until the law begins anew (reset());
 /// - so the guard narrows the limits of u(k): the law's input is put inside them (source `guarded`,
-///   and an event says why), and the prediction hands them to an optimizer; where the PI acts the
-///   source is `fallback` and there is no prediction.
+///   and an event says why), and the prediction hands them to an optimizer; where the fallback acts
+///   the source is `fallback` and there is no prediction.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
 /// then model_trust, model_trust_ahead (the least over the horizon), model_trust_steps (samples
 /// ahead before it falls below trust_low; see HorizonTrust), locked.
 class GuardedController final : public ControllerAround {
  public:
+  /// @param fallback acts where the law may not; null: there moves shrink with trust.
   /// @throws InputError naming the field.
-  GuardedController(std::unique_ptr<Controller> inside, GuardParams params, InputLimits limits,
-                    PlantInfo plant);
-  ~GuardedController() override;
+  GuardedController(std::unique_ptr<Controller> inside, std::unique_ptr<Controller> fallback,
+                    GuardParams params, InputLimits limits, PlantInfo plant);
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
+  void forget() override;
+  void lookOn(const Measurement& now) override;
+  bool expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) override;
   void setModel(const TsModel& model) override;
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
   const GuardView& view() const { return view_; }
@@ -115,6 +116,8 @@ class GuardedController final : public ControllerAround {
   bool swingsGrow(const Measurement& now);
   void fallBack(const Measurement& now, bool outside);
   void narrow(const Vector& before);
+  void askFallback(const Measurement& now, const SetpointSource& setpoint,
+                   ControllerOutput& output);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void lookAhead(const Measurement& now, const ControllerOutput& output);
   void refreshSignals();
@@ -124,16 +127,17 @@ class GuardedController final : public ControllerAround {
   InputLimits limits_, shrunk_;
   Vector lower_, upper_;  // of u(k)
   PlantInfo plant_;
-  std::unique_ptr<PiController> pi_;
-  ControllerOutput pi_output_;
+  std::unique_ptr<Controller> fallback_;  // or null
+  ControllerOutput fallback_output_;
   std::vector<LockUpWatch> locks_;      // one per input
   std::vector<GrowingSwings> growing_;  // one per input
   std::vector<bool> moved_;             // by input: the model knows it, so the law may move it
   TsModel model_;
   bool known_{false};  // the model says where its data were
-  bool fallback_{false};
+  bool fallen_back_{false};
   bool unstable_{false};  // it is so for good
-  bool begins_{false};    // the PI, at this sample
+  bool begins_{false};    // the fallback, at this sample
+  bool asked_{false};     // so is it
   Measurement from_;      // from there: what swings, from its middle
   int above_{};           // samples in a row above trust_high
   Vector point_, proposed_;

@@ -58,7 +58,7 @@ std::string general(std::string path) {
       R"(controller\.inputs\[\]|controller\.observer\.estimated|report\.consumption|gateway\.tags|targets\.outputs|targets\.inputs|plausibility\.signals|standstill\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
-  path = std::regex_replace(path, std::regex(R"(^guard\.pi\.)"), "controller.");
+  path = std::regex_replace(path, std::regex(R"(^guard\.fallback\.)"), "controller.");
   path = std::regex_replace(path, std::regex(R"(^targets\.observer\.)"), "controller.observer.");
   path = std::regex_replace(path, std::regex(R"(^setpoint\.commands)"), "disturbance.commands");
   path =
@@ -165,7 +165,7 @@ std::set<std::string> readerKeys() {
     if (section.size() > 2 && section.substr(section.size() - 2) == "[]")
       keys.erase(section.substr(0, section.size() - 2));
   }
-  for (const char* either : {"plant.outputs", "guard.pi", "plant.model", "plant.ranges.NAME"})
+  for (const char* either : {"plant.outputs", "guard.fallback", "plant.model", "plant.ranges.NAME"})
     keys.insert(either);  // or a mapping
   for (const char* other : {"clp", "disturbance.pattern.channels", "disturbance.csv.channels"})
     keys.erase(other);

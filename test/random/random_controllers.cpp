@@ -52,7 +52,7 @@ std::string derivative(Dice& dice, const RandomFrame& frame, double kp) {
   return text;
 }
 
-std::string pi(Dice& dice, RandomFrame& frame) { return randomPiKeys(dice, frame); }
+std::string pi(Dice& dice, RandomFrame& frame) { return piKeys(dice, frame); }
 
 /// Of the plants that have a load to be fed forward.
 std::string loadSupervisor(Dice& dice, RandomFrame& frame) {
@@ -202,8 +202,6 @@ const std::map<std::string, Maker>& makers() {
 }
 
 }  // namespace
-
-std::string randomPiKeys(Dice& dice, const RandomFrame& frame) { return piKeys(dice, frame); }
 
 bool hasGenerator(const std::string& type) { return makers().count(type) > 0; }
 

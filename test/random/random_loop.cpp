@@ -68,6 +68,13 @@ double usualSampleTime(const PlantDescription& plant) {
   return shipped > 0.0 ? shipped : 0.1 * plant.time_unit_s;
 }
 
+/// A PI or a law with the loop's model, as a section of its own; not one that searches at length.
+std::string randomFallback(Dice& dice, RandomFrame frame, std::vector<std::string> types) {
+  types.erase(std::remove(types.begin(), types.end(), "swarm_mpc"), types.end());
+  types.resize(types.size() + 2, "pi");
+  return randomController(dice.pick(types), dice, frame);
+}
+
 std::string listed(const std::vector<std::string>& names) { return "[" + join(names) + "]"; }
 
 const Quantity& stateOf(const PlantDescription& plant, const std::string& name) {
@@ -152,7 +159,8 @@ RandomLoop randomLoop(std::uint64_t seed, const std::vector<std::string>& shippe
   // moves are not shrunk where the law names the few positions of its actuators
   const bool guarded = type.needs_model && frame.actuator.empty();
   const std::string guard =
-      guarded ? randomGuard(dice, frame, randomPiKeys(dice, frame)) : std::string();
+      guarded ? randomGuard(dice, frame, randomFallback(dice, frame, modelled.controllers))
+              : std::string();
   loop.text = "title: Random loop " + std::to_string(seed) + "\n" + plant +
               "sampling:\n  sample_time_s: " + exactText(frame.sample_time_s) +
               "\n  duration_h: " + exactText(frame.hours(frame.samples)) + "\n" +

@@ -36,7 +36,6 @@ std::string randomActuator(Dice& dice, const RandomFrame& frame);
 std::string randomSetpoint(Dice& dice, const RandomFrame& frame);
 std::string randomDisturbance(Dice& dice, const RandomFrame& frame, RandomLoop& loop);
 std::string randomNoise(Dice& dice, const RandomFrame& frame);
-std::string randomPiKeys(Dice& dice, const RandomFrame& frame);  ///< as in controller and guard.pi
 std::string randomObserver(Dice& dice, const RandomFrame& frame);  ///< a key of controller
 std::string randomDrives(Dice& dice, const RandomFrame& frame);    ///< a key of actuator
 // Each may be empty.
@@ -44,7 +43,8 @@ std::string randomModel(Dice& dice, const RandomFrame& frame);
 std::string randomSensors(Dice& dice, const RandomFrame& frame);
 std::string randomPlausibility(Dice& dice, const RandomFrame& frame);
 std::string randomStandstill(Dice& dice, const RandomFrame& frame);
-std::string randomGuard(Dice& dice, const RandomFrame& frame, const std::string& pi_keys);
+/// @param fallback a section `controller`.
+std::string randomGuard(Dice& dice, const RandomFrame& frame, const std::string& fallback);
 std::string randomClp(Dice& dice, const RandomFrame& frame);
 
 }  // namespace fpc

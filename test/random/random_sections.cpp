@@ -94,7 +94,7 @@ std::string randomStandstill(Dice& dice, const RandomFrame& frame) {
   return text + "}\n";
 }
 
-std::string randomGuard(Dice& dice, const RandomFrame& frame, const std::string& pi_keys) {
+std::string randomGuard(Dice& dice, const RandomFrame& frame, const std::string& fallback) {
   if (frame.model.empty() || !dice.chance(0.4)) return "";
   if (dice.chance(0.2)) return "guard: false\n";
   const double low = dice.between(0.05, 0.5);
@@ -103,10 +103,10 @@ std::string randomGuard(Dice& dice, const RandomFrame& frame, const std::string&
                      "\n  lock_samples: " + std::to_string(dice.whole(0, 15)) +
                      "\n  return_samples: " + std::to_string(dice.whole(1, 10)) + "\n";
   if (!dice.chance(0.3)) return text;
-  text += "  pi:\n";
-  for (std::size_t from = 0; from < pi_keys.size();) {
-    const std::size_t to = pi_keys.find('\n', from);
-    text += "  " + pi_keys.substr(from, to - from + 1);
+  text += "  fallback:\n";
+  for (std::size_t from = fallback.find('\n') + 1; from < fallback.size();) {
+    const std::size_t to = fallback.find('\n', from);
+    text += "  " + fallback.substr(from, to - from + 1);
     from = to + 1;
   }
   return text;

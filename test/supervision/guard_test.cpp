@@ -13,6 +13,7 @@ namespace control_guard_test {
 struct Wish final : Controller {
   void reset(const Measurement& start) override { resets.push_back(start.header.step); }
   void forget() override { forgotten_before_reset = resets.size(); }
+  void lookOn(const Measurement& now) override { looked_on.push_back(now.header.step); }
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override {
     output.input = of({wish});
@@ -35,37 +36,39 @@ struct Wish final : Controller {
     return p;
   }
   bool needsModel() const override { return true; }
-  void setModel(const TsModel&) override {}
-  std::vector<std::uint32_t> resets;
+  void setModel(const TsModel&) override { ++models; }
+  std::vector<std::uint32_t> resets, looked_on;
+  int models{};
   std::size_t forgotten_before_reset{99};
   double wish{700.0}, seen{};
 };
 
 class Guard : public testing::Test {
  protected:
-  void make(GuardParams params) {
+  void make(GuardParams params, std::unique_ptr<Controller> fallback = nullptr) {
     auto owned = std::make_unique<Wish>();
     law = owned.get();
-    guard =
-        std::make_unique<GuardedController>(std::move(owned), std::move(params), limits(), plant());
+    guard = std::make_unique<GuardedController>(std::move(owned), std::move(fallback),
+                                                std::move(params), limits(), plant());
     guard->setModel(boxModel());
     guard->reset(sample(0));
   }
-  static GuardParams params(bool with_pi = false) {
+  static GuardParams params() {
     GuardParams p;
     p.lock_samples = 0;
     p.least_move = 0.02;
     p.return_samples = 3;
-    if (!with_pi) return p;
-    PiLoop pi;
-    pi.output = 1;
-    pi.kp = 0.5;
-    pi.ki_per_h = 1.0;
-    pi.bias = 775.0;
-    PiParams fallback;
-    fallback.loops = {pi};
-    p.pi = std::make_shared<const PiParams>(fallback);
     return p;
+  }
+  static std::unique_ptr<Controller> pi() {
+    PiLoop loop;
+    loop.output = 1;
+    loop.kp = 0.5;
+    loop.ki_per_h = 1.0;
+    loop.bias = 775.0;
+    PiParams params;
+    params.loops = {loop};
+    return std::make_unique<PiController>(params, limits(), plant());
   }
   double step(std::uint32_t k, double x, double applied) {
     Measurement now = sample(k, 1, applied);
@@ -128,7 +131,7 @@ TEST_F(Guard, BetweenTheThresholdsMovesShrinkInProportion) {
 }
 
 TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {
-  make(params(true));
+  make(params(), pi());
   EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
   EXPECT_EQ(step(1, 2400.0, 700.0), 700.0);  // bumpless
   EXPECT_EQ(out.source, ActionSource::kFallback);
@@ -142,6 +145,28 @@ TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {
   EXPECT_EQ(law->resets, Steps{5});          // reset: its own bumpless start
   EXPECT_EQ(law->forgotten_before_reset, 0U) << "what it learned out there, before that reset";
   EXPECT_EQ(out.source, ActionSource::kBase);
+}
+
+TEST_F(Guard, ALawWithAModelIsAFallbackThatFollowsTheProcess) {
+  auto owned = std::make_unique<Wish>();
+  Wish* fallback = owned.get();
+  fallback->wish = 650.0;
+  make(params(), std::move(owned));
+  EXPECT_EQ(fallback->models, 1);
+  EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
+  EXPECT_EQ(step(1, 2000.0, 700.0), 700.0);
+  EXPECT_EQ(fallback->looked_on, (Steps{0, 1}));
+  fallback->resets.clear();
+  EXPECT_EQ(step(2, 2400.0, 700.0), 650.0);
+  EXPECT_EQ(out.source, ActionSource::kFallback);
+  EXPECT_FALSE(out.predictive);
+  EXPECT_EQ(fallback->resets, Steps{2}) << "from the present sample";
+  EXPECT_EQ(fallback->looked_on, (Steps{0, 1})) << "it acts";
+  fallback->wish = 2000.0;
+  EXPECT_EQ(step(3, 2400.0, 650.0), 1600.0) << "limits hold";
+  guard->lookOn(sample(4));
+  EXPECT_EQ(fallback->looked_on.back(), 4U);
+  EXPECT_EQ(law->looked_on, Steps{4});
 }
 
 TEST_F(Guard, AnInputThatTheModelDoesNotKnowIsNeverLockedUp) {
@@ -169,9 +194,9 @@ TEST_F(Guard, AnInputThatTheModelDoesNotKnowIsNeverLockedUp) {
 
 // A law that is not stable with this plant does not become so: the PI stays.
 TEST_F(Guard, WhatSwingsFurtherEachTimeIsHandedToTheFallbackForGood) {
-  GuardParams p = params(true);
+  GuardParams p = params();
   p.growing_swings = 6;
-  make(p);
+  make(p, pi());
   double applied = 700.0;
   std::uint32_t handed = 0;
   for (std::uint32_t k = 1; k < 150; ++k) {
@@ -189,11 +214,30 @@ TEST_F(Guard, WhatSwingsFurtherEachTimeIsHandedToTheFallbackForGood) {
   EXPECT_EQ(out.source, ActionSource::kBase);
 }
 
+TEST_F(Guard, InASwingALawWithAModelBeginsAtThePresentSample) {
+  GuardParams p = params();
+  p.growing_swings = 6;
+  auto owned = std::make_unique<Wish>();
+  Wish* fallback = owned.get();
+  make(p, std::move(owned));
+  fallback->resets.clear();
+  double applied = 700.0;
+  std::uint32_t k = 0;
+  while (k < 70 && out.source != ActionSource::kFallback) {
+    law->wish = 700.0 + std::pow(1.05, ++k) * std::sin(k);
+    out.begin();
+    applied = step(k, 1800.0, applied);
+  }
+  EXPECT_LT(k, 40U);
+  EXPECT_EQ(fallback->resets, Steps{k});
+  EXPECT_EQ(fallback->seen, 700.0 + std::pow(1.05, k - 1) * std::sin(k - 1));
+}
+
 // Outside the model's data the plant swings under the fallback; the law had swung a little before.
 TEST_F(Guard, OnlySwingsOfTheLawAreCounted) {
-  GuardParams p = params(true);
+  GuardParams p = params();
   p.growing_swings = 6;
-  make(p);
+  make(p, pi());
   double applied = 700.0;
   for (std::uint32_t k = 1; k < 130; ++k) {
     const bool outside = k > 12 && k < 65;
@@ -216,7 +260,7 @@ TEST_F(Guard, MistakesNameTheirKey) {
     GuardParams p = params();
     change(p);
     try {
-      p.validate(2, 1, 1);
+      p.validate(2, false);
     } catch (const InputError& e) {
       return e.what();
     }
@@ -230,7 +274,7 @@ TEST_F(Guard, MistakesNameTheirKey) {
   names(errorWith([](GuardParams& p) { p.lock_samples = -1; }), "guard.lock_samples");
   names(errorWith([](GuardParams& p) { p.lock_step = 2.0; }), "guard.lock_step");
   names(errorWith([](GuardParams& p) { p.growing_swings = 2; }), "guard.growing_swings");
-  names(errorWith([](GuardParams& p) { p.growing_swings = 6; }), "guard.pi");
+  names(errorWith([](GuardParams& p) { p.growing_swings = 6; }), "guard.fallback");
   names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "outputs that the law follows");
 }
 

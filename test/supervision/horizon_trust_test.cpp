@@ -40,7 +40,8 @@ class PlanAhead : public testing::Test {
     auto owned = std::make_unique<Planner>();
     planner = owned.get();
     params.lock_samples = 0;
-    guard = std::make_unique<GuardedController>(std::move(owned), params, limits(), plant());
+    guard =
+        std::make_unique<GuardedController>(std::move(owned), nullptr, params, limits(), plant());
     guard->setModel(boxModel());
     guard->reset(sample(0));
   }

@@ -36,8 +36,6 @@ PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
   return pi;
 }
 
-}  // namespace
-
 PiParams readPi(YamlSection& section, const ControllerContext& loop) {
   PiParams params;
   if (section.has("reference_pole")) {
@@ -52,8 +50,6 @@ PiParams readPi(YamlSection& section, const ControllerContext& loop) {
   });
   return params;
 }
-
-namespace {
 
 std::unique_ptr<Controller> makePi(const PiParams& params, const ControllerContext& loop) {
   return std::make_unique<PiController>(params, loop.limits, loop.plant);

@@ -1,7 +1,8 @@
-// Reads a PI from its section, of a controller or of a guard. Private to the room.
+// Reads a PI from its section. Private to the room.
 #pragma once
 
-#include "control/pi/pi_reader.hpp"
+#include "control/pi/pi.hpp"
+#include "fmbpc/control/registry.hpp"
 #include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {

@@ -433,7 +433,7 @@ class Designer {
     return rewritten(brief_, "law",
                      {{"model", "{file: '" + model_file_ + "'}"},
                       {"controller", c.str()},
-                      {"guard", "{pi: {loops: " +
+                      {"guard", "{fallback: {type: pi, loops: " +
                                     piLoops(brief_, outline_,
                                             pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) +
                                     "}}"}});
