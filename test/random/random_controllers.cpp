@@ -52,8 +52,6 @@ std::string derivative(Dice& dice, const RandomFrame& frame, double kp) {
   return text;
 }
 
-std::string pi(Dice& dice, RandomFrame& frame) { return piKeys(dice, frame); }
-
 /// Of the plants that have a load to be fed forward.
 std::string loadSupervisor(Dice& dice, RandomFrame& frame) {
   const Quantity& u = frame.plant.inputs.front();
@@ -69,7 +67,7 @@ std::string loadSupervisor(Dice& dice, RandomFrame& frame) {
   return text;
 }
 
-std::string piKeys(Dice& dice, const RandomFrame& frame) {
+std::string pi(Dice& dice, RandomFrame& frame) {
   std::string text = "  loops:\n";
   const auto& inputs = frame.plant.inputs;
   for (std::size_t i = 0; i < std::min(inputs.size(), frame.outputs.size()); ++i) {
