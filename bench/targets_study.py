@@ -342,7 +342,7 @@ WEATHER = {"dry": {}, "rain": {"disturbance.csv.next.file": "${FMBPC_DATA}/bsm1_
 def with_noise(spec):
     """Noise on all analysers; every law but the supervisor, which samples three times as often, sees means, as bsm1_fmbpc_noise does."""
     for sensor in spec["sensors"].values():
-        sensor.update({"class_noise": True, **({"average": True} if spec["controller"]["type"] == "fmbpc" else {})})
+        sensor.update({"noise_std": 0.025 * (sensor["upper"] - sensor["lower"]), **({"average": True} if spec["controller"]["type"] == "fmbpc" else {})})
     if "standstill" in spec:
         spec["standstill"].update(signals={"S_NH5": 0.01, "S_NH_in": 0.01, "Q_in": 10}, noise_window_h=24)
     return spec

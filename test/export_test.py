@@ -335,8 +335,6 @@ double exp(double x) {
                             ("asp_case1_pi_x --set controller.loops.0.preview_h=1", ("preview_h",)),
                             ("asp_case1_clp", ("clp", "--to c99")),
                             ("asp_case1_clp --to c99 --real", ("--real",)),
-                            ("asp_case1_clp --to c99 --set clp.mode2_steps=3", ("clp.mode2_steps",)),
-                            ("asp_clp_1a --to c99 --set clp.action=eq27", ("clp.action",)),
                             ("asp_case1_pi_x --set standstill.window_h=6 --set standstill.signals.x=1", ("standstill",)),
                             ("four_on_two --to c99", ("targets",)),
                             ("cstr_tracking_observer", ("controller.realisation",)),

@@ -20,7 +20,7 @@ def without_lists(key):
 def written_out(key):
     """The keys that a row stands for: lists of signals and sections of the same keys."""
     if "SIGNALS" in key:
-        return [key.replace("SIGNALS", signals) for signals in ("outputs", "inputs", "disturbances")]
+        return [key.replace("SIGNALS", matrix + signals) for signals in ("outputs", "inputs", "disturbances") for matrix in ("", "matrix.")]
     same = {"controller.observer": "targets.observer", "plant.matrix.elements": "controller.model", "disturbance.commands": "setpoint.commands"}
     return [key, *(key.replace(one, other) for one, other in same.items() if key.startswith(one))]
 

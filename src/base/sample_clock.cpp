@@ -21,7 +21,7 @@ SampleClock::SampleClock(double sample_time_s, double start_time_s)
       sample_ns_(nanoseconds(sample_time_s)),
       start_ns_(nanoseconds(start_time_s)) {
   require(sample_ns_ > 0, "sampling.sample_time_s", "at least 1e-9 s");
-  require(start_ns_ > 0, "sampling.start_time_s", "a time > 0 (0 is special to rosbag and tf2)");
+  require(start_ns_ > 0, "start_time_s", "a time > 0 (0 is special to rosbag and tf2)");
 }
 
 std::uint32_t SampleClock::firstStepAt(std::int64_t time_ns) const {

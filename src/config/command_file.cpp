@@ -93,8 +93,7 @@ bool readOn(YamlSection& entry, const std::string& key) {
 
 /// Without a schedule there is nothing to hold.
 bool readHold(YamlSection& entry, const std::string& key, const LoopFile& loop) {
-  if (loop.setpoint.schedule.empty())
-    entry.fail(key, "a loop with setpoint.schedule or setpoint.recipe");
+  if (loop.setpoint.schedule.empty()) entry.fail(key, "a loop with setpoint.schedule");
   return readOn(entry, key);
 }
 

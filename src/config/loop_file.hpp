@@ -94,10 +94,10 @@ struct ReportParams {
 
 /// Section `model.identify`: how fuzzy_identifier finds models while the plant runs.
 struct IdentifyParams {
-  std::string structure_file;    ///< absolute; empty: only goals that bring a structure
-  Structure structure;           ///< of that file
-  int window{100000};            ///< samples kept, the newest; 0: all
-  double validation_share{0.3};  ///< of the rows, at the end, held out
+  static constexpr std::size_t kWindow = 100000;   ///< samples kept, the newest
+  static constexpr double kValidationShare = 0.3;  ///< of the rows, at the end, held out
+  std::string structure_file;  ///< absolute; empty: only goals that bring a structure
+  Structure structure;         ///< of that file
   int after{0};  ///< samples after which the node identifies unasked, once; 0: on request only
   OnlineParams online;
 };

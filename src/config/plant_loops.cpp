@@ -161,8 +161,7 @@ void readPlan(YamlSection& item, const SignalOfLoop& from, const SignalOfLoop& t
     item.fail("plan", "a sender without clp: what an optimizer changes is not in the law's plan");
   if (!receiver.controller->signalUse(controllerContext(receiver)).looks_ahead)
     item.fail("plan",
-              "a receiver whose law looks ahead at disturbances (type fmbpc, law: iterated, "
-              "disturbance_feedforward: true); " +
+              "a receiver whose law looks ahead at disturbances (type fmbpc, law: iterated); " +
                   to.of->name + " has none");
   if (std::none_of(measured.begin(), measured.end(),
                    [&](const SignalInfo& one) { return one.name == link.name; }))

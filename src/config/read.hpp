@@ -34,11 +34,6 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readController(YamlSection& root, LoopFile& loop);
 void readTargets(YamlSection& root, LoopFile& loop);
-/// `recipe`: what a batch plant does one after the other, as entries of a schedule.
-std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
-                                     const std::vector<std::string>& outputs);
-/// A time that stands there in seconds, in hours; unchanged if there is none.
-void readHours(YamlSection& section, const std::string& key, double& hours);
 /// Keys separator, decimal, missing_values.
 void readCsvFormat(YamlSection& section, CsvFormat& format);
 /// Key `disturbance.csv`.

@@ -8,7 +8,6 @@ void readCandidate(YamlSection& root, LoopFile& loop) {
   CandidateFile& candidate = loop.candidate;
   section.text("loop", candidate.file);
   section.integer("samples", candidate.params.samples, 40, 10000);
-  section.numbers("authority", candidate.params.authority, {0.0, 1.0, true});
   section.boolean("automatic", candidate.params.automatic);
   checked(section, [&] { candidate.params.validate(); });
   section.finish();

@@ -87,16 +87,12 @@ void readTargetOutputs(YamlSection& section, ClpParams& clp,
 
 void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names) {
   section.integer("perturbation_steps", clp.perturbation_steps, 1, 1000);
-  section.integer("mode2_steps", clp.mode2_steps, 0, 1000);
   readOption(section, "cost", clp.cost);
   section.byName("weight_perturbation", clp.weight_perturbation, names.inputs, kFinitePositive);
   section.byName("weight_tracking", clp.weight_tracking, names.outputs, kFiniteNotNegative);
-  section.byName("weight_state_output", clp.weight_state_output, names.outputs, kFiniteNotNegative);
-  section.byName("weight_input", clp.weight_input, names.inputs, kFinitePositive);
   readOption(section, "bounds", clp.bounds);
   section.byName("increment_lower", clp.increment_lower, names.inputs);
   section.byName("increment_upper", clp.increment_upper, names.inputs);
-  readOption(section, "action", clp.action);
   readTargetOutputs(section, clp, names.outputs);
   section.byName("output_lower", clp.output_lower, names.outputs);
   section.byName("output_upper", clp.output_upper, names.outputs);
@@ -163,12 +159,6 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
       item.fail("time_h", "times that do not decrease");
     requireOnce(item, params.schedule, names.outputs);
   }
-  const std::vector<SetpointStep> recipe = readRecipe(section, names.outputs);
-  if (!recipe.empty() && !params.schedule.empty())
-    section.fail("recipe", "either schedule or recipe");
-  for (const SetpointStep& entry : recipe)
-    requireInRange(section, "recipe", entry.value, loop.plant_info);
-  if (!recipe.empty()) params.schedule = recipe;
   section.byName("lower", params.lower, names.outputs);
   section.byName("upper", params.upper, names.outputs);
   section.byName("rate_per_h", params.rate_per_h, names.outputs, Range{0.0, kInfinity, true});

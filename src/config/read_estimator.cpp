@@ -27,7 +27,6 @@ void readEstimator(YamlSection& root, LoopFile& loop) {
   params.initial = params.process_std = params.noise_std = Vector::Zero(n_y);
   section.byName("initial", params.initial, all, kFinite);
   params.initial_std = kBadlyKnown * params.initial.cwiseAbs();
-  section.byName("initial_std", params.initial_std, all, kFiniteNotNegative);
   if (loop.simulation.noise_std.size() == n_y) params.noise_std = loop.simulation.noise_std;
   section.byName("noise_std", params.noise_std, all, kFiniteNotNegative);
   section.byName("process_std", params.process_std, all, kFinitePositive);

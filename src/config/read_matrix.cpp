@@ -41,7 +41,6 @@ PlantFactory readMatrixPlant(YamlSection& plant) {
   TransferMatrix matrix;
   matrix.name = "transfer_matrix";
   matrix.title = "Matrix of lags with dead times, of the loop file";
-  section.text("title", matrix.title);
   matrix.outputs = readQuantities(section, "outputs");
   matrix.inputs = readQuantities(section, "inputs");
   matrix.disturbances = readQuantities(section, "disturbances");

@@ -25,8 +25,6 @@ void readIdentify(YamlSection& model, LoopFile& loop) {
   IdentifyParams& params = loop.identify;
   loop.has_identify = model.has("identify");
   section.text("structure", params.structure_file);
-  section.integer("window", params.window, 0);
-  section.number("validation_share", params.validation_share, {0.0, 0.9});
   section.integer("after", params.after, 0);
   readOnline(section, params.online);
   if (params.after > 0 && params.structure_file.empty())

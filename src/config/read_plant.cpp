@@ -137,7 +137,6 @@ void readSampling(YamlSection& root, LoopFile& loop) {
   need(section, "duration_h", "a time >= 0; 0 is endless");
   section.number("sample_time_s", sim.sample_time_s, {1e-9, 1e9});
   section.number("duration_h", duration_h, {0.0, 1e7});
-  section.number("start_time_s", sim.start_time_s, {1e-9, 4e9});
   const double samples = duration_h * 3600.0 / sim.sample_time_s;
   if (std::abs(samples - std::round(samples)) > 1e-6 * std::max(1.0, samples))
     section.fail("duration_h",

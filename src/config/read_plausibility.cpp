@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kJumpOfRange = 0.5;
 constexpr int kBridged = 3;
+constexpr double kMargin = 0.1;  // of the plant's range, beside it
 
 /// What is known of the instrument: where its scale ends.
 void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPlausibility& asked) {
@@ -26,13 +27,13 @@ void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPl
 }
 
 /// The plant's range, wider by a part of itself; an endless one asks nothing.
-SignalPlausibility defaultsOf(const SignalInfo& signal, double margin, bool is_output) {
+SignalPlausibility defaultsOf(const SignalInfo& signal, bool is_output) {
   SignalPlausibility asked;
   asked.repeated = is_output;  // records of disturbances are often rounded
   const double range = signal.upper - signal.lower;
   if (!std::isfinite(range)) return asked;
-  asked.lower = signal.lower - margin * range;
-  asked.upper = signal.upper + margin * range;
+  asked.lower = signal.lower - kMargin * range;
+  asked.upper = signal.upper + kMargin * range;
   if (is_output && range > 0.0) asked.jump = kJumpOfRange * range;
   return asked;
 }
@@ -43,17 +44,16 @@ void readSignal(YamlSection& section, bool is_output, SignalPlausibility& asked)
   if (!(asked.lower <= asked.upper)) section.fail("upper", "a number >= lower");
   section.number("rate_per_h", asked.rate_per_h, {0.0, kInfinity, true});
   section.number("jump", asked.jump, {0.0, kInfinity, true});
-  section.integer("jump_samples", asked.jump_samples, 1);
   section.boolean("frozen", asked.frozen);
-  if (is_output) section.boolean("repeated", asked.repeated);
+  if (section.has("frozen")) asked.repeated = is_output && asked.frozen;
   readOption(section, "substitute", asked.substitute);
   section.finish();
 }
 
 void readSignals(YamlSection& signals, const LoopFile& loop, const std::vector<SignalInfo>& infos,
-                 double margin, bool is_output, std::vector<SignalPlausibility>& list) {
+                 bool is_output, std::vector<SignalPlausibility>& list) {
   for (const SignalInfo& info : infos) {
-    SignalPlausibility asked = defaultsOf(info, margin, is_output);
+    SignalPlausibility asked = defaultsOf(info, is_output);
     describeInstrument(loop, info, asked);
     const auto& watched = loop.standstill.signals;  // by a section made for it
     asked.frozen = std::none_of(watched.begin(), watched.end(),
@@ -85,19 +85,13 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   }
   for (const Eigen::Index hidden : loop.estimator.outputs)
     params.needs[static_cast<std::size_t>(hidden)] = false;  // estimated, whatever is measured
-  double margin = 0.1;
   section.integer("bridge_samples", params.bridge_samples, 0);
-  section.number("margin", margin, kFiniteNotNegative);
-  section.boolean("gain_sign", params.gain_sign);
   section.integer("reaction_samples", params.reaction_samples, 0, 100000);
-  readOption(section, "reaction", params.reaction);
-  readOption(section, "plant_bounds", params.plant_bounds);
-  section.integer("stuck_samples", loop.stuck.samples, 0);
   loop.stuck.hold = loop.gateway.enabled();
   readOption(section, "stuck", loop.stuck.hold, {{"say", false}, {"hold", true}});
   YamlSection signals = section.section("signals");
-  readSignals(signals, loop, plant.outputs, margin, true, params.outputs);
-  readSignals(signals, loop, plant.disturbances, margin, false, params.disturbances);
+  readSignals(signals, loop, plant.outputs, true, params.outputs);
+  readSignals(signals, loop, plant.disturbances, false, params.disturbances);
   signals.finish();
   checked(section, [&] {
     params.validate(plant.outputs.size(), plant.disturbances.size(),

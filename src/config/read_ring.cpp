@@ -136,6 +136,13 @@ const std::set<std::string> kSummaryKeys{
     "loop",   "title",  "run_id",     "first_step",     "complete", "steps",   "wall_s", "outputs",
     "inputs", "limits", "violations", "actuator_clips", "clp",      "sources", "events"};
 
+/// A key in seconds, kept in hours.
+void readHours(YamlSection& section, const std::string& key, double& hours) {
+  double seconds = 3600.0 * hours;
+  section.number(key, seconds, {0.0, 3.6e10});
+  if (section.has(key)) hours = seconds / 3600.0;
+}
+
 ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
   ReportWindow window;
   need(item, "name", "a name");

@@ -12,7 +12,6 @@ namespace {
 /// A benchmark class; what else the section says goes over it.
 void readClass(YamlSection& section, SensorParams& params) {
   std::optional<SensorClass> kind;
-  bool noisy = false;
   section.number("lower", params.lower, {});
   section.number("upper", params.upper, {});
   readOption(section, "class", kind,
@@ -23,23 +22,16 @@ void readClass(YamlSection& section, SensorParams& params) {
               {"C0", SensorClass::kC0},
               {"C1", SensorClass::kC1},
               {"D", SensorClass::kD}});
-  section.boolean("class_noise", noisy);
-  if (noisy && !kind) section.fail("class_noise", "a class besides");
-  if (!kind) return;
-  if (noisy && !(std::isfinite(params.lower) && std::isfinite(params.upper)))
-    section.fail("class_noise", "finite lower and upper: noise is a part of the range");
-  params = sensorOfClass(*kind, params.lower, params.upper, noisy);
+  if (kind) params = sensorOfClass(*kind, params.lower, params.upper);
 }
 
 SensorParams readSensor(YamlSection& section) {
   SensorParams params;
   readClass(section, params);
-  section.integer("lags", params.lags, 0, 20);
   double t90_s = params.lags > 0 ? params.lag_s * lagsToNinety(params.lags) : 0.0;
   section.number("t90_s", t90_s, kFiniteNotNegative);
   if (section.has("t90_s") && params.lags == 0) params.lags = 1;
-  if (section.has("t90_s") || section.has("lags"))
-    params.lag_s = params.lags > 0 ? t90_s / lagsToNinety(params.lags) : 0.0;
+  if (section.has("t90_s")) params.lag_s = t90_s / lagsToNinety(params.lags);
   if (params.lag_s == 0.0) params.lags = 0;
   section.number("delay_s", params.delay_s, kFiniteNotNegative);
   section.number("interval_s", params.interval_s, kFiniteNotNegative);
@@ -47,8 +39,14 @@ SensorParams readSensor(YamlSection& section) {
   section.number("resolution", params.resolution, kFiniteNotNegative);
   section.boolean("average", params.average);
   section.number("lost", params.lost, {0.0, 1.0});
-  section.number("stuck_from_h", params.stuck_from_h, Range{0.0, kInfinity});
-  section.number("stuck_to_h", params.stuck_to_h, Range{0.0, kInfinity});
+  std::vector<double> stuck_h;
+  section.numbers("stuck_h", stuck_h, kFiniteNotNegative);
+  if (section.has("stuck_h")) {
+    if (stuck_h.size() != 2 || stuck_h[0] > stuck_h[1])
+      section.fail("stuck_h", "[from, to] with from <= to");
+    params.stuck_from_h = stuck_h[0];
+    params.stuck_to_h = stuck_h[1];
+  }
   checked(section, [&] { params.validate(); });
   section.finish();
   return params;
@@ -59,7 +57,7 @@ SensorParams readSensor(YamlSection& section) {
 void readSensors(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("sensors");
   InstrumentParams& params = loop.simulation.instruments;
-  section.seed("seed", params.seed);
+  params.seed = loop.simulation.noise_seed;
   section.number("step_s", params.step_s, kFinitePositive);
   for (const auto* group : {&names.outputs, &names.seen_disturbances})
     for (const auto& name : *group) {

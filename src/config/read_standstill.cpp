@@ -59,24 +59,19 @@ void setNoise(const LoopFile& loop, const SignalNames& names, std::vector<Watche
 }
 
 /// A term of the fallback: what is measured adds to an input.
-AffineTerm readTerm(YamlSection& item, const SignalNames& names) {
+AffineTerm readTerm(YamlSection& item, const SignalNames& names, const Vector& nominal) {
   AffineTerm term;
   term.target = indexByName(item, "input", names.inputs);
-  std::vector<std::string> of, known = names.outputs;
-  known.insert(known.end(), names.disturbances.begin(), names.disturbances.end());
+  std::vector<std::string> of;
+  const auto& known = names.disturbances;
   item.subset("of", of, known);
   if (of.empty()) item.fail("of", "a list of " + join(known));
   for (const auto& name : of) {
-    const Index place = std::find(known.begin(), known.end(), name) - known.begin();
-    const auto n_y = static_cast<Index>(names.outputs.size());
-    if (place < n_y)
-      term.outputs.push_back(place);
-    else
-      term.disturbances.push_back(place - n_y);
+    term.disturbances.push_back(std::find(known.begin(), known.end(), name) - known.begin());
+    term.about *= nominal[term.disturbances.back()];
   }
-  for (const char* number : {"about", "gain"}) need(item, number, "a number");
-  item.number("about", term.about, kFinite);
-  if (term.about == 0.0) item.fail("about", "a number other than 0");
+  if (term.about == 0.0) item.fail("of", "disturbances whose nominal value is not 0");
+  need(item, "gain", "a number");
   item.number("gain", term.gain, kFinite);
   item.finish();
   return term;
@@ -105,11 +100,10 @@ void readStandstill(YamlSection& root, LoopFile& loop) {
   signals.finish();
   setNoise(loop, names, params.signals);
   params.usual = loop.disturbance_nominal;
-  section.byName("usual", params.usual, names.disturbances, kFinite);
   params.fallback = loop.simulation.actuator.initial;
   section.byName("fallback", params.fallback, names.inputs, kFinite);
   for (auto& item : section.list("fallback_plan"))
-    params.fallback_plan.push_back(readTerm(item, names));
+    params.fallback_plan.push_back(readTerm(item, names, loop.disturbance_nominal));
   section.finish();
 }
 

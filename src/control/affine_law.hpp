@@ -11,10 +11,10 @@
 namespace fpc {
 
 struct AffineTerm {
-  Eigen::Index target{};                            ///< the value it is part of
-  std::vector<Eigen::Index> outputs, disturbances;  ///< measured signals, multiplied
-  double about{1.0};                                ///< their product at which the term is 0, not 0
-  double gain{};                                    ///< of the target
+  Eigen::Index target{};                   ///< the value it is part of
+  std::vector<Eigen::Index> disturbances;  ///< measured ones, multiplied
+  double about{1.0};                       ///< their product at which the term is 0, not 0
+  double gain{};                           ///< of the target
 };
 
 class AffineLaw {
@@ -26,7 +26,7 @@ class AffineLaw {
   bool empty() const { return terms_.empty(); }
   /// The values at this sample. Terms of signals that are not finite stay as
   /// they were. No allocation.
-  const Vector& follow(VectorRef outputs, VectorRef disturbances);
+  const Vector& follow(VectorRef disturbances);
 
  private:
   std::vector<AffineTerm> terms_;

@@ -13,7 +13,6 @@ PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimit
                              const std::vector<std::string>& estimated)
     : limits_(limits),
       plant_(plant),
-      feedforward_(params.disturbance_feedforward),
       preview_(params.preview),
       holdback_(params.reference_holdback.size() > 0
                     ? params.reference_holdback
@@ -21,14 +20,11 @@ PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimit
       output_signals_(output_signals.size()),
       reference_(params.reference_pole, params.preview),
       transfer_(countOf(plant_.inputs), params.transfer_decay),
-      disturbances_(feedforward_ ? Vector(Vector::Zero(countOf(plant_.disturbances)))
-                                 : params.disturbance_nominal),
+      disturbances_(Vector::Zero(countOf(plant_.disturbances))),
       past_disturbances_(disturbances_),
       proposal_(Vector::Zero(countOf(plant_.inputs))),
       last_input_(limits_.lower) {
   limits_.validate(countOf(plant_.inputs));
-  require(disturbances_.size() == countOf(plant_.disturbances), "disturbance.nominal",
-          std::to_string(plant_.disturbances.size()) + " numbers");
   for (const auto& output : plant_.outputs)
     for (const auto& name : output_signals) signals_.emplace_back(output.name + "_" + name, 0.0);
   for (const auto& input : plant_.inputs) signals_.emplace_back(input.name + "_unclipped", 0.0);
@@ -95,7 +91,7 @@ void PredictiveLaw::tuningPrepared(const Vector& reference_pole) {
 
 void PredictiveLaw::estimate(const LawSample& sample) {
   past_disturbances_ = disturbances_;
-  if (feedforward_) disturbances_ = sample.now.disturbances;
+  disturbances_ = sample.now.disturbances;
   if (start_pending_) {
     past_disturbances_ = disturbances_;
     core_->rest(sample);

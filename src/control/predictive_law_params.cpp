@@ -14,7 +14,6 @@ void PredictiveLawParams::validate(Eigen::Index n_y) const {
   require(reference_holdback.size() == 0 ||
               (reference_holdback.size() == n_y && reference_holdback.minCoeff() > 0.0),
           "controller.reference_holdback", std::to_string(n_y) + " numbers > 0");
-  require(disturbance_nominal.allFinite(), "disturbance_nominal", "finite numbers");
   require(transfer_decay >= 0.0 && transfer_decay < 1.0, "transfer_decay", "a number >= 0 and < 1");
   require(prediction_steps >= 1 && prediction_steps <= 100000, "controller.prediction_steps",
           "an integer from 1 to 100000");
@@ -24,12 +23,10 @@ void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
                        PredictiveLawParams& params) {
   params.reference_pole = Vector::Constant(loop.outputCount(), 0.9);
   params.reference_holdback = Vector::Constant(loop.outputCount(), kInfinity);
-  params.disturbance_nominal = loop.disturbance_nominal;
   section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
   section.byName("reference_holdback", params.reference_holdback, loop.outputs(),
                  {0.0, kInfinity, true});
   section.boolean("preview", params.preview);
-  section.boolean("disturbance_feedforward", params.disturbance_feedforward);
   readPredictionSteps(section, loop, params.prediction_steps);
 }
 

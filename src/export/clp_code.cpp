@@ -95,14 +95,6 @@ Vector orOf(const Vector& given, Eigen::Index size, double value) {
   return given.size() > 0 ? given : Vector(Vector::Constant(size, value));
 }
 
-void requireExported(const LoopFile& loop) {
-  const std::string where = loop.name + ": clp.";
-  require(loop.clp.mode2_steps == 0, where + "mode2_steps",
-          "0: limits beyond the horizon are not exported");
-  require(loop.clp.bounds != ClpBounds::kIncremental || loop.clp.action == ClpAction::kEq26,
-          where + "action", "eq26: eq27 does not bound the input that goes out");
-}
-
 void describe(const BlockParts& parts, const LocalModel& layout, const PredictiveLawParams& law,
               int lead, ClpText& text) {
   const LoopFile& loop = parts.loop;
@@ -201,7 +193,6 @@ ClpCode::ClpCode(BlockParts& parts, const LocalModel& model, const PredictiveLaw
       status_out_(0),
       iterations_out_(0),
       active_out_(0) {
-  requireExported(b_.loop);
   const int n_y = b_.n_y, n_u = b_.n_u, n_x = static_cast<int>(model.stateSize());
   x = member("x", n_x);
   A = member("A", n_y * n_x);

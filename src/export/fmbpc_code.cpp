@@ -39,7 +39,6 @@ class FmbpcCode final : public PredictiveCode {
       : PredictiveCode(parts, params, parts.loop.model),
         params_(params),
         realigned_(params.realisation == FmbpcRealisation::kRealigned),
-        measured_(params.antecedent == FmbpcAntecedent::kMeasured),
         model_(parts, withoutDelay(parts.loop.model, params.delay_steps), "m", "m"),
         n_x_(model_.n_x()) {
     requireExported();
@@ -93,7 +92,6 @@ class FmbpcCode final : public PredictiveCode {
     base_ = p_.states("base", Kind::kReal, b_.n_y);
     B_ = p_.states("gainB", Kind::kReal, b_.n_y * b_.n_u);
     offset_ = p_.states("offset", Kind::kReal, b_.n_y);  // y - y_m, or w_hat
-    measured_x_ = measured_ && !realigned_ ? p_.states("measuredX", Kind::kReal, n_x_) : x_;
     if (delayed_) {
       const int n = params_.delay_steps;
       late_x_ = p_.states("lateX", Kind::kReal, n_x_);
@@ -135,7 +133,6 @@ class FmbpcCode final : public PredictiveCode {
 
   void startModel() override {
     model_.rest(x_, b_.y, b_.applied, dm_);
-    if (measured_ && !realigned_) model_.rest(measured_x_, b_.y, b_.applied, dm_);
     p_.loop(b_.n_y, [&](const Value& i) {
       if (realigned_)
         p_.set(offset_[i], 0.0);
@@ -165,7 +162,6 @@ class FmbpcCode final : public PredictiveCode {
       return;
     }
     model_.shift(x_, undelayed_, b_.applied, past_);
-    if (measured_) model_.shift(measured_x_, b_.y, b_.applied, past_);
     if (!delayed_) return;
     p_.loop(b_.n_u,
             [&](const Value& j) { p_.set(late_u_[j], past_inputs_[oldest_ * b_.n_u + j]); });
@@ -199,7 +195,7 @@ class FmbpcCode final : public PredictiveCode {
   Value late_d_before() const { return b_.n_d == 0 ? dm_ : late_past_; }
 
   void propose() override {
-    model_.blend(measured_ && !realigned_ ? measured_x_ : x_, dm_);
+    model_.blend(x_, dm_);
     if (delayed_) {
       for (int j = 0; j < b_.n_d; ++j) {
         p_.set(late_d_[j], past_ds_[oldest_d_ * b_.n_d + j]);
@@ -207,7 +203,7 @@ class FmbpcCode final : public PredictiveCode {
       }
       p_.set(oldest_d_, oldest_d_ + 1);
       p_.when(oldest_d_ >= params_.delay_steps, [&] { p_.set(oldest_d_, 0); });
-      delayed_->blend(measured_ ? measured_x_ : late_x_, late_d_);
+      delayed_->blend(late_x_, late_d_);
       for (int j = 0; j < b_.n_d; ++j) p_.set(late_d_before()[j], late_d_[j]);
     }
     if (!realigned_)
@@ -572,15 +568,14 @@ class FmbpcCode final : public PredictiveCode {
   }
 
   const FmbpcParams& params_;
-  bool realigned_, measured_;
+  bool realigned_;
   ModelCode model_;
   std::optional<ModelCode> delayed_;
   int n_x_;
   std::vector<int> followed_;
-  Value x_{0}, base_{0}, B_{0}, offset_{0}, measured_x_{0}, late_x_{0}, late_base_{0}, late_B_{0},
-      past_inputs_{0}, oldest_{0}, oldest_d_{0}, past_ds_{0}, late_d_{0}, late_u_{0}, late_past_{0},
-      undelayed_{0}, free_{0}, next_{0}, sum_{0}, effect_{0}, size_{0}, lack_{0}, a_{0}, c_{0},
-      some_{0};
+  Value x_{0}, base_{0}, B_{0}, offset_{0}, late_x_{0}, late_base_{0}, late_B_{0}, past_inputs_{0},
+      oldest_{0}, oldest_d_{0}, past_ds_{0}, late_d_{0}, late_u_{0}, late_past_{0}, undelayed_{0},
+      free_{0}, next_{0}, sum_{0}, effect_{0}, size_{0}, lack_{0}, a_{0}, c_{0}, some_{0};
   std::vector<Value> error_out_;
   std::vector<std::vector<Value>> weights_out_;
 };

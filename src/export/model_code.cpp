@@ -567,8 +567,6 @@ PredictiveCode::PredictiveCode(BlockParts& parts, const PredictiveLawParams& par
       clipped_(0) {
   require(!params.preview, parts.loop.name + ": controller.preview",
           "false: a block gets setpoints as they come and cannot look ahead");
-  require(params.disturbance_feedforward || params.disturbance_nominal.size() == parts.n_d,
-          parts.loop.name + ": disturbance.nominal", "a number for each disturbance");
   require(model.unmeasured.empty(), parts.loop.name + ": controller.observer.estimated",
           "nothing: the exported block estimates no disturbance");
   reference_ = p_.states("reference", Kind::kReal, b_.n_y);
@@ -596,8 +594,7 @@ void PredictiveCode::step() {
     if (std::isfinite(law_.reference_holdback[i]))
       p_.clamp(reference_[i], b_.y[i] - law_.reference_holdback[i],
                b_.y[i] + law_.reference_holdback[i]);
-  for (int i = 0; i < b_.n_d; ++i)
-    p_.set(dm_[i], law_.disturbance_feedforward ? b_.d[i] : Value(law_.disturbance_nominal[i]));
+  for (int i = 0; i < b_.n_d; ++i) p_.set(dm_[i], b_.d[i]);
   p_.when(
       start_,
       [&] {

@@ -201,8 +201,7 @@ class OptimalCode final : public PredictiveCode {
         p_.when(
             begun_,
             [&] {
-              p_.set(d_g_[r * b_.n_y + i],
-                     d_g_[r * b_.n_y + i] + params_.disturbance_gain * (a_ - d_g_[r * b_.n_y + i]));
+              p_.set(d_g_[r * b_.n_y + i], d_g_[r * b_.n_y + i] + (a_ - d_g_[r * b_.n_y + i]));
             },
             [&] { p_.set(d_g_[r * b_.n_y + i], a_); });
         p_.contain(d_g_[r * b_.n_y + i]);

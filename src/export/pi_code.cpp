@@ -96,22 +96,6 @@ class PiCode final : public LawCode {
     p_.when(x >= xs[n - 1], [&] { p_.set(to, ys[n - 1]); });
   }
 
-  Value scheduleSignal(int i) const {
-    const PiScheduleSignal& s = loop(i).terms.schedule;
-    switch (s.kind) {
-      case PiScheduleSignal::Kind::kOutput:
-        return b_.y[s.index];
-      case PiScheduleSignal::Kind::kSetpoint:
-        return b_.setpoint[s.index];
-      case PiScheduleSignal::Kind::kDisturbance:
-        return b_.d[s.index];
-      case PiScheduleSignal::Kind::kInput:
-        return b_.applied[s.index];
-      default:
-        return b_.y[loop(i).output];
-    }
-  }
-
   /// t_ := what the error is taken from.
   void aim(int i) {
     const PiLoop& l = loop(i);
@@ -168,11 +152,10 @@ class PiCode final : public LawCode {
     const PiFeedforward& f = loop(i).terms.feedforward[which];
     const Value slow = lagged_[k(i)][static_cast<int>(which)];
     const double share = f.lag_h > 0.0 ? -std::expm1(-hours_ / f.lag_h) : 1.0;
-    const double direct = f.lag_h > 0.0 ? f.lead_h / f.lag_h : 0.0;
     p_.set(w_, b_.d[f.disturbance] - f.nominal);
     p_.when(fresh_[k(i)], [&] { p_.set(slow, w_); });
     p_.set(slow, slow + share * (w_ - slow));
-    p_.set(v_, v_ + f.gain * (direct * w_ + (1.0 - direct) * slow));
+    p_.set(v_, v_ + f.gain * slow);
   }
 
   void propose(int i) {
@@ -186,7 +169,7 @@ class PiCode final : public LawCode {
         at.push_back(point.output);
         value.push_back(point.gain);
       }
-      curve("piGain" + std::to_string(i), at, value, scheduleSignal(i), gain_);
+      curve("piGain" + std::to_string(i), at, value, b_.y[l.output], gain_);
       p_.set(error_, error_ * gain_);
     }
     p_.set(errors_[i], error_);

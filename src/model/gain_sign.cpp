@@ -104,15 +104,14 @@ void requireForeseen(const std::vector<TurnedGain>& turned, const TsModel& fresh
       throw InputError("model '" + fresh.name + "': expected to foresee " + gain.output +
                        " as well as the running model, since it turns the sign of the gain from " +
                        gain.input + ", got errors of " + shortText(fresh_errors[gain.row]) +
-                       " instead of " + shortText(running_errors[gain.row]) +
-                       " one sample ahead (plausibility.gain_sign)");
+                       " instead of " + shortText(running_errors[gain.row]) + " one sample ahead");
 }
 
 void requireFewTurned(const std::vector<TurnedGain>& turned, const TsModel& fresh) {
   if (!tooManyTurned(turned, fresh)) return;
   throw InputError("model '" + fresh.name +
                    "': expected the sign of the running model's gain from " + turned[0].input +
-                   " to " + turned[0].output + ", got the opposite (plausibility.gain_sign)");
+                   " to " + turned[0].output + ", got the opposite");
 }
 
 }  // namespace fpc

@@ -37,7 +37,7 @@ ColumnRules rulesOf(const CsvChannel& channel, MissingCells missing) {
   rules.upper = channel.upper;
   rules.implausible = channel.implausible;
   rules.missing_key = "disturbance.csv.missing";
-  rules.implausible_key = "disturbance.csv.channels." + channel.name + ".implausible";
+  rules.implausible_key = "disturbance.csv.missing";
   return rules;
 }
 

@@ -10,7 +10,6 @@ namespace fpc {
 namespace {
 
 constexpr double kEarlySample = 1e-6;  // [s], rounding of times that are sums of steps
-constexpr double kClassNoise = 0.025;
 constexpr std::uint64_t kLossStream = 1;
 
 bool isTime(double value) { return std::isfinite(value) && value >= 0.0; }
@@ -30,11 +29,10 @@ void SensorParams::validate() const {
           "a time >= stuck_from_h");
 }
 
-SensorParams sensorOfClass(SensorClass kind, double lower, double upper, bool noisy) {
+SensorParams sensorOfClass(SensorClass kind, double lower, double upper) {
   SensorParams p;
   p.lower = lower;
   p.upper = upper;
-  if (noisy) p.noise_std = kClassNoise * (upper - lower);
   if (kind == SensorClass::kD) {  // a batch: the result is there when the next one begins
     p.delay_s = p.interval_s = 1800.0;
     return p;

@@ -33,8 +33,8 @@ struct SensorParams {
 };
 
 enum class SensorClass { kA, kB0, kB1, kC0, kC1, kD };
-/// A class's lags, interval and dead time; with `noisy` noise of 2.5 % of its range.
-SensorParams sensorOfClass(SensorClass kind, double lower, double upper, bool noisy);
+/// A class's lags, interval and dead time.
+SensorParams sensorOfClass(SensorClass kind, double lower, double upper);
 
 /// One instrument. Time passes in steps; all its noise comes from its own engine.
 class Sensor {

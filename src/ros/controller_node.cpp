@@ -108,7 +108,6 @@ void ControllerNode::advertiseSignals() {
 void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
     if (!plant_.introduce(*msg)) return;
-    session_.doubtPlant(plant_.remark());
     session_.announce(plant_.runId());
     inbox_.announce(plant_.runId());
     announceIfReady();

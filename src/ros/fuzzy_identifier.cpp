@@ -25,11 +25,11 @@ ros::NodeHandle withoutTimer(const ros::NodeHandle& private_node) {
   return private_node;
 }
 
-double shareOf(const fmbpc::IdentifyModelGoal& goal, const LoopFile& loop) {
-  if (goal.validation_share == 0.0) return loop.identify.validation_share;
+double shareOf(const fmbpc::IdentifyModelGoal& goal) {
+  if (goal.validation_share == 0.0) return IdentifyParams::kValidationShare;
   if (goal.validation_share == -1.0) return 0.0;
   require(goal.validation_share > 0.0 && goal.validation_share < 1.0, "validation_share",
-          "a share > 0 and < 1, 0 (as in the loop file) or -1 (none)");
+          "a share > 0 and < 1, 0 (0.3) or -1 (none)");
   return goal.validation_share;
 }
 
@@ -174,8 +174,7 @@ void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
     require(!worker_.busy(), "identify", "one goal at a time: another identification is running");
     require(loop_.has_identify, "model.identify",
             "that section in the loop file: nothing is collected");
-    begin(session_.job(structureOf(wish, loop_), wish.window, shareOf(wish, loop_)),
-          wish.publish != 0);
+    begin(session_.job(structureOf(wish, loop_), wish.window, shareOf(wish)), wish.publish != 0);
   } catch (const std::exception& error) {
     result.message = error.what();
     ROS_WARN("fuzzy_identifier: goal rejected: %s", error.what());

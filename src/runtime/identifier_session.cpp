@@ -16,7 +16,7 @@ IdentifierSession::IdentifierSession(const LoopFile& loop)
       has_start_(loop.has_model),
       has_identify_(loop.has_identify),
       start_(loop.model),
-      collector_(loop.plant_info, static_cast<std::size_t>(loop.identify.window)) {}
+      collector_(loop.plant_info, IdentifyParams::kWindow) {}
 
 void IdentifierSession::announce(std::uint64_t run_id, double now_s) {
   collector_.announce(run_id);
@@ -65,7 +65,7 @@ IdentifierSession::Due IdentifierSession::take(const Measurement& measurement) {
 void IdentifierSession::identify(Due& due) {
   done_by_itself_ = true;
   try {
-    due.job = job(params_.structure, 0, params_.validation_share);
+    due.job = job(params_.structure, 0, IdentifyParams::kValidationShare);
   } catch (const InputError& error) {
     due.refusal = error.what();
     due.refused = EventCode::kIdentificationFailed;

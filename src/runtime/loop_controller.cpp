@@ -47,7 +47,7 @@ void LoopController::learn(const Measurement& now) {
 void LoopController::identify(int window) {
   require(identifier_ && loop_.has_identify, "identify", "a loop with model.identify");
   run(identifier_->job(loop_.identify.structure, static_cast<std::size_t>(window),
-                       loop_.identify.validation_share));
+                       IdentifyParams::kValidationShare));
 }
 
 void LoopController::run(const IdentificationJob& job) {

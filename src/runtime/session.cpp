@@ -181,14 +181,8 @@ void ControllerSession::process(const Measurement& m) {
   } else if (!m.input_applied.allFinite()) {
     hold(m, {EventCode::kSignalMissing, "the applied input is not finite: input held"});
     interruption_ = kNotFinite;
-  } else if (const Notice bad = imposing(DoubtAction::kFallback); bad.code != EventCode::kNone) {
-    fallBack(m, bad);
-    interruption_ = kDoubted;
   } else if (verdict == Verdict::kFallback) {
     fallBack(m, plausibility_.notice());
-    interruption_ = kDoubted;
-  } else if (const Notice doubt = imposing(DoubtAction::kHold); doubt.code != EventCode::kNone) {
-    hold(m, doubt);
     interruption_ = kDoubted;
   } else if (!usable) {
     hold(m, plausibility_.notice());
@@ -227,17 +221,7 @@ bool ControllerSession::foresee(const Measurement& m, Eigen::Ref<Vector> outputs
          controller_->foresee(seen(m), outputs);
 }
 
-void ControllerSession::doubtPlant(const std::string& difference) { plant_doubt_ = difference; }
-
 Notice ControllerSession::reaction() const { return reaction_ ? reaction_->notice() : Notice(); }
-
-/// Why the loop file wants this done now; kNone if it does not.
-Notice ControllerSession::imposing(DoubtAction action) const {
-  const PlausibilityParams& params = plausibility_.params();
-  if (params.plant_bounds == action && !plant_doubt_.empty())
-    return {EventCode::kPlantDiffers, plant_doubt_.c_str()};
-  return params.reaction == action ? reaction() : Notice();
-}
 
 /// What is said of this sample; nothing of the final one, which has no action.
 void ControllerSession::gatherEvents() {

@@ -64,9 +64,8 @@ enum class Receipt {
 ///   controller is reset when it takes them again;
 /// - a signal that the law needs is not accepted (SignalValidator: no number, out of range,
 ///   ...): answered with the last applied input, source held, or from what is accepted
-///   instead; for longer than hold_samples with the fallback. The same if the plant, or how its
-///   outputs react, is doubted and the loop file asks for it (DoubtAction). The controller is
-///   reset, bumplessly, at the next sample that it gets;
+///   instead; for longer than hold_samples with the fallback. The controller is reset,
+///   bumplessly, at the next sample that it gets;
 /// - first sample, gap, new run: the controller is reset; otherwise it just steps.
 /// Move limits count from the applied input, but for one with an offset, which the law, a person
 /// and a fallback move on from the last command (MoveOrigin): they see that one as applied.
@@ -159,9 +158,6 @@ class ControllerSession {
   void aim(const Targets& targets);
   /// Of the measurements to come: false while the plant's own hand has the inputs.
   void plantTakesActions(bool on) { takes_actions_ = on; }
-  /// In what the plant that announced itself differs from the loop file, in words; empty: in
-  /// nothing. What is done about it is plausibility.plant_bounds.
-  void doubtPlant(const std::string& difference);
   /// The input that the outputs do not react to as the model says; see ActuatorEffectiveness.
   Notice reaction() const;
   /// Of these outputs it is not said that their setpoint was clamped.
@@ -190,7 +186,6 @@ class ControllerSession {
   void endTest();
   void hold(const Measurement& m, const Notice& why);
   void fallBack(const Measurement& m, const Notice& why);
-  Notice imposing(DoubtAction action) const;
   void gatherEvents();
   void watchReaction(const Measurement& m);
   void forgetSamples();
@@ -228,7 +223,7 @@ class ControllerSession {
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first
   RecentSamples recent_;
-  std::string model_text_, plant_doubt_;
+  std::string model_text_;
   EventWriter written_;
   EventCode model_event_{EventCode::kNone};          // that has not been said yet
   std::vector<std::string> manual_texts_;            // by input; empty: not clamped

@@ -36,12 +36,11 @@ std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
   std::vector<std::string> keys;
   if (loop.disturbance.source == DisturbanceSource::kPattern)
     keys.emplace_back("disturbance.pattern.seed");
-  if (noisy) keys.emplace_back("noise.seed");
   const auto& sensors = loop.simulation.instruments.sensors;
-  if (std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
+  if (noisy || std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
         return sensor.second.noise_std > 0.0 || sensor.second.lost > 0.0;
       }))
-    keys.emplace_back("sensors.seed");
+    keys.emplace_back("noise.seed");
   const auto& parameters = loop.simulation.parameters;
   const auto local = parameters.find("local_noise");
   if (local != parameters.end() && local->second > 0.0)

@@ -42,11 +42,6 @@ const char* nameOf(TrialResult result) {
 
 void CandidateParams::validate() const {
   require(samples >= 40, "candidate.samples", "an integer >= 40");
-  require(!authority.empty() && authority.back() == 1.0, "candidate.authority",
-          "shares that end with 1");
-  for (std::size_t i = 0; i < authority.size(); ++i)
-    require(authority[i] > (i == 0 ? 0.0 : authority[i - 1]) && authority[i] <= 1.0,
-            "candidate.authority", "increasing shares > 0 and <= 1");
 }
 
 CandidateTrial::CandidateTrial(const TsModel& model, const TsModel* present,

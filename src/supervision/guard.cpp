@@ -32,8 +32,8 @@ bool isLaws(ActionSource source) {
 }  // namespace
 
 void GuardParams::validate(Index n_y, bool has_fallback) const {
-  require(trust_low >= 0.0 && trust_low <= 1.0, "guard.trust_low", "a number from 0 to 1");
-  require(trust_high >= trust_low && trust_high <= 1.0, "guard.trust_high",
+  require(trust_low >= 0.0 && trust_low <= 1.0, "guard.trust", "a number from 0 to 1");
+  require(trust_high >= trust_low && trust_high <= 1.0, "guard.trust",
           "a number from trust_low to 1");
   require(look_ahead >= 0, "guard.look_ahead", "an integer >= 0");
   require(horizon_least >= 0, "guard.horizon_least", "an integer >= 0");

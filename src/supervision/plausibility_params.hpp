@@ -34,10 +34,6 @@ struct SignalPlausibility {
   Substitute substitute{Substitute::kHold};
 };
 
-/// What is done about a doubt that concerns no single signal.
-enum class DoubtAction : std::uint8_t { kSay, kHold, kFallback };
-inline std::vector<std::string> wordsOf(DoubtAction) { return {"say", "hold", "fallback"}; }
-
 /// What is asked of all measured signals.
 struct PlausibilityParams {
   bool enabled{false};    ///< without: only what is no number is doubted
@@ -45,9 +41,7 @@ struct PlausibilityParams {
   int bridge_samples{0};  ///< so long a doubted signal is replaced as with Substitute::kModel
   bool gain_sign{false};  ///< a new model must have the gains' signs of the running one
   int reaction_samples{0};  ///< window in which the outputs must react to the inputs; 0: not asked
-  DoubtAction reaction{DoubtAction::kSay};      ///< of an input that the outputs do not react to
-  DoubtAction plant_bounds{DoubtAction::kSay};  ///< of a plant that announces other bounds
-  Vector fallback;                              ///< n_u; empty: none, the input is held for ever
+  Vector fallback;          ///< n_u; empty: none, the input is held for ever
   bool range_falls{true};   ///< the fallback follows a value outside its range as well
   std::vector<bool> needs;  ///< outputs, then disturbances: what the law needs; empty: all
   std::vector<SignalPlausibility> outputs,

@@ -92,10 +92,6 @@ void PlausibilityParams::validate(std::size_t n_y, std::size_t n_d, Eigen::Index
           "plausibility: fallback", "a finite number per input");
   require(reaction_samples == 0 || reaction_samples >= 8, "plausibility.reaction_samples",
           "0 or an integer >= 8");
-  require(reaction != DoubtAction::kFallback || fallback.size() > 0, "plausibility.reaction",
-          "an actuator.fallback to go to");
-  require(plant_bounds != DoubtAction::kFallback || fallback.size() > 0,
-          "plausibility.plant_bounds", "an actuator.fallback to go to");
   require(outputs.size() <= n_y && disturbances.size() <= n_d, "plausibility.signals",
           "signals of the plant");
   require(needs.empty() || needs.size() == n_y + n_d, "plausibility: needs", "one per signal");

@@ -163,7 +163,7 @@ void StandstillWatch::watch(const Measurement& now) {
 void StandstillWatch::fallBack(const Measurement& now, const SetpointSource& setpoint,
                                ControllerOutput& output) {
   output.input = params_.fallback;
-  if (!plan_.empty()) output.input += plan_.follow(seen_.outputs, seen_.disturbances);
+  if (!plan_.empty()) output.input += plan_.follow(seen_.disturbances);
   limits_.clip(output.input, now.input_applied);
   output.source = ActionSource::kFallback;
   output.reference = setpoint.present();

@@ -44,11 +44,10 @@ TEST_F(ErrorKeys, WhatNobodyMeasuresIsNamedWithWhatItNeeds) {
          "expected an unmeasured disturbance of the model, which has none");
   expect("plant.measured_disturbances=[rate]",
          estimated + ".rate: expected a disturbance that is not measured");
-  expect("model.identify.window=10", "--set model.identify: expected no such section beside");
+  expect("model.identify.online.every=10", "--set model.identify: expected no such section beside");
   expect("controller.reference_holdback=0",
          "--set controller.reference_holdback: expected a number > 0");
   expect("estimator.outputs=[CA]", "--set estimator.outputs: expected nothing beside");
-  expect("controller.antecedent=measured", "controller.antecedent: expected model beside");
   expect("controller.realisation=parallel", "controller.realisation: expected observer where");
 }
 

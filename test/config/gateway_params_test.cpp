@@ -26,19 +26,21 @@ TEST(GatewayParams, ReadsTheTagMapOfTopics) {
 TEST(GatewayParams, ReadsTheTagMapOfRegisters) {
   const GatewayParams gateway =
       gatewayLoop(
-          "  type: modbus\n  modbus: {word_order: low_first, remote_coil: 3, remote_table: "
-          "discrete}\n"
+          "  type: modbus\n  modbus: {word_order: low_first, remote_coil: 3}\n"
           "  tags:\n    level: {register: 7, table: input}\n"
-          "    rain: {register: 2, type: int32, word_order: high_first}\n"
-          "    inflow: {register: 4, type: uint16, scale: 0.01, offset: -1, readback: 6}\n")
+          "    rain: {register: 2, type: int32}\n"
+          "    inflow: {register: 4, type: uint16, scale: 0.01, offset: -1, readback: 6, table: "
+          "input}\n")
           .gateway;
   EXPECT_TRUE(gateway.outputs[0].modbus.input_table);
   EXPECT_EQ(gateway.outputs[0].modbus.format.order, WordOrder::kLowFirst);
-  EXPECT_EQ(gateway.disturbances[0].modbus.format.order, WordOrder::kHighFirst);
   EXPECT_EQ(gateway.inputs[0].modbus.address, 4);
   EXPECT_EQ(gateway.inputs[0].readback.address, 6);
   EXPECT_EQ(gateway.inputs[0].readback.format.scale, 0.01);
-  EXPECT_TRUE(gateway.modbus.remote.discrete_table);
+  EXPECT_TRUE(gateway.inputs[0].readback.input_table);
+  EXPECT_FALSE(gateway.inputs[0].modbus.input_table);
+  EXPECT_EQ(gateway.modbus.timeout_s, 0.5);
+  EXPECT_EQ(gateway.modbus.reconnect_s, 1.0);
   EXPECT_TRUE(gateway.reads_back);  // what a holding register holds can be read
   EXPECT_EQ(gateway.heartbeat_s, 0.0);
 }
@@ -85,7 +87,6 @@ TEST(GatewayParams, NoAddressOfTheMapMeansTwoThings) {
                   "remote_coil: 1",
                   "register: 4, readback: 6"),
             kNone);
-  EXPECT_EQ(error("automatic_coil: 1, remote_coil: 1, remote_table: discrete", apart), kNone);
   // A float at 0 also has register 1.
   expectWords(error("", "register: 1"),
               {"gateway.tags.inflow.register", "an address of its own", "tags.level.register"});

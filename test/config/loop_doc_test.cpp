@@ -57,17 +57,17 @@ std::string general(std::string path) {
       R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|actuator\.lag|)"
       R"(controller\.inputs\[\]|controller\.observer\.estimated|report\.consumption|gateway\.tags|targets\.outputs|targets\.inputs|plausibility\.signals|standstill\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
-  path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
+  path = std::regex_replace(path, std::regex(R"(^sensors\.(?!step_s$)\w+)"), "sensors.NAME");
   path = std::regex_replace(path, std::regex(R"(^guard\.fallback\.)"), "controller.");
   path = std::regex_replace(path, std::regex(R"(^targets\.observer\.)"), "controller.observer.");
   path = std::regex_replace(path, std::regex(R"(^setpoint\.commands)"), "disturbance.commands");
   path =
       std::regex_replace(path, std::regex(R"(^controller\.model\[\])"), "plant.matrix.elements[]");
   path = std::regex_replace(path, std::regex(R"(^loop\.publishers\.\w+)"), "loop.publishers.TOPIC");
-  const std::regex signals(R"(^plant\.(matrix\.)?(outputs|inputs|disturbances)\[\]\.)");
-  path = std::regex_replace(path, signals, "plant.$1SIGNALS[].");
-  const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(?!\w+_(?:s|min|h)$)\w+$)");
-  return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
+  const std::regex signals(R"(^plant\.(?:matrix\.)?(?:outputs|inputs|disturbances)\[\]\.)");
+  path = std::regex_replace(path, signals, "plant.SIGNALS[].");
+  const std::regex outputs(R"(^setpoint\.schedule\[\]\.(?!\w+_h$)\w+$)");
+  return std::regex_replace(path, outputs, "setpoint.schedule[].NAME");
 }
 
 std::set<std::string> asked(const std::string& text) {
@@ -108,12 +108,11 @@ std::set<std::string> readerKeys() {
       "signal: ";
   const std::string prbs =
       controlled(excitation + "prbs}]\n  feedback: [{input: q_r, output: s, gain: 1}]\n");
-  const std::string levels =
-      controlled(excitation + "multi_level, hold_lower_s: 720, hold_upper_s: 720}]\n");
+  const std::string levels = controlled(excitation + "multi_level, hold_s: [720, 720]}]\n");
   const std::string steps = controlled(excitation + "steps, schedule: [{time_h: 1, value: 2}]}]\n");
   const std::string batch =
       "plant: {type: batch_reactor}\nsampling: {sample_time_s: 10, duration_h: 1}\n"
-      "setpoint: {recipe: [{T: 30, hold_s: 3600}]}\nmodel: {file: " +
+      "setpoint: {schedule: [{time_h: 0, T: 30}]}\nmodel: {file: " +
       sourceDir() + "/config/model/batch_fuzzy.yaml}\n" +
       "actuator: {initial: {kM: 0}}\ncontroller:\n  type: hybrid_mpc\n  horizon_blocks: 1\n  ";
   const std::string rest =
@@ -215,7 +214,6 @@ std::map<std::string, std::string> structDefaults() {
           {"plant.integrator.absolute_tolerance", exactText(integrator.absolute_tolerance)},
           {"plant.integrator.max_steps", std::to_string(integrator.max_steps)},
           {"plant.integrator.method", wordOf(integrator.method)},
-          {"sampling.start_time_s", exactText(loop.simulation.start_time_s)},
           {"disturbance.source", wordOf(loop.disturbance.source)},
           {"disturbance.pattern.seed", std::to_string(loop.disturbance.pattern.seed)},
           {"disturbance.csv.time_unit", csv.time_unit},
@@ -227,28 +225,21 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.law", wordOf(law.law)},
           {"controller.coincidence_steps", std::to_string(law.coincidence_steps)},
           {"controller.preview", word(law.preview)},
-          {"controller.max_iterations", std::to_string(nmpc.solver.max_iterations)},
           {"controller.integration_steps", std::to_string(nmpc.integration_steps)},
           {"controller.swarm.particles", std::to_string(swarm.particles)},
           {"controller.swarm.iterations", std::to_string(swarm.iterations)},
-          {"controller.swarm.seed", std::to_string(swarm.seed)},
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
           {"controller.iterations", std::to_string(law.iterations)},
           {"controller.forecast_pole", exactText(law.forecast_pole)},
           {"controller.realisation", wordOf(law.realisation)},
-          {"controller.antecedent", wordOf(law.antecedent)},
           {"controller.delay_steps", std::to_string(law.delay_steps)},
           {"controller.reference_lead_steps", std::to_string(law.reference_lead_steps)},
           {"controller.offset_gain", exactText(law.offset_gain)},
-          {"controller.disturbance_feedforward", word(law.disturbance_feedforward)},
           {"controller.move_steps", std::to_string(optimal.tuning.move_steps)},
           {"controller.solve", wordOf(optimal.solve)},
           {"controller.disturbance", wordOf(optimal.disturbance)},
-          {"controller.disturbance_gain", exactText(optimal.disturbance_gain)},
           {"controller.loops[].ki_per_h", exactText(pi.ki_per_h)},
           {"controller.loops[].reverse", word(pi.reverse)},
-          {"guard.trust_low", exactText(loop.guard.trust_low)},
-          {"guard.trust_high", exactText(loop.guard.trust_high)},
           {"guard.return_samples", std::to_string(loop.guard.return_samples)},
           {"guard.lock_samples", std::to_string(loop.guard.lock_samples)},
           {"guard.lock_error", exactText(loop.guard.lock_error)},
@@ -259,16 +250,12 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.seed", std::to_string(ExcitationParams{}.seed)},
           {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
           {"model.max_pole", exactText(loop.max_pole)},
-          {"model.identify.window", std::to_string(loop.identify.window)},
-          {"model.identify.validation_share", exactText(loop.identify.validation_share)},
           {"model.identify.after", std::to_string(loop.identify.after)},
           {"model.identify.online.every", std::to_string(loop.identify.online.every)},
           {"model.identify.online.forgetting", exactText(loop.identify.online.rls.forgetting)},
           {"clp.perturbation_steps", std::to_string(clp.perturbation_steps)},
-          {"clp.mode2_steps", std::to_string(clp.mode2_steps)},
           {"clp.cost", wordOf(clp.cost)},
           {"clp.bounds", wordOf(clp.bounds)},
-          {"clp.action", wordOf(clp.action)},
           {"clp.output_penalty", exactText(clp.output_penalty)},
           {"clp.qp.max_iterations", std::to_string(clp.qp.max_iterations)},
           {"actuator.hold_samples", std::to_string(loop.simulation.actuator.hold_samples)},

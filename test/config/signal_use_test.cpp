@@ -27,21 +27,10 @@ Use useOf(const std::string& name, const Overrides& overrides = {}) {
 }
 
 // Outputs s, x; disturbances q_i, s_i.
-TEST(SignalUse, APiNeedsItsOutputItsScheduleAndWhatItFeedsForward) {
+TEST(SignalUse, APiNeedsItsOutputAndWhatItFeedsForward) {
   EXPECT_EQ(useOf("asp_case1_pi_x"), (Use{{false, true, false, false}, {1}}));
   EXPECT_EQ(useOf("asp_case1_pi_s"), (Use{{true, false, false, false}, {0}}));
   EXPECT_EQ(useOf("asp_case1_pi_x_best"), (Use{{false, true, true, true}, {1}}));
-  Overrides scheduled{
-      {"controller.loops.0.gain_schedule", "[{output: 1, gain: 1}, {output: 1e4, gain: 2}]"}};
-  for (const auto& [signal, use] :
-       {std::pair<const char*, Use>{"s", {{true, true, false, false}, {1}}},
-        {"s_i", {{false, true, false, true}, {1}}},
-        {"setpoint/s", {{false, true, false, false}, {1}}},
-        {"q_r", {{false, true, false, false}, {1}}}}) {
-    Overrides by = scheduled;
-    by.emplace_back("controller.loops.0.schedule_by", signal);
-    EXPECT_EQ(useOf("asp_case1_pi_x", by), use) << signal;
-  }
 }
 
 TEST(SignalUse, APredictiveLawNeedsAllAndFollowsWhatHasAWeight) {

@@ -38,8 +38,7 @@ Outcome run(const std::string& name, const Overrides& fault) {
 
 Overrides stuck(const std::string& sensor) {
   return {{"sensors." + sensor + ".class", sensor == "Q_in" ? "A" : "B0"},
-          {"sensors." + sensor + ".stuck_from_h", kFrom},
-          {"sensors." + sensor + ".stuck_to_h", kTo}};
+          {"sensors." + sensor + ".stuck_h", std::string("[") + kFrom + ", " + kTo + "]"}};
 }
 
 /// `frozen`: the signal that is to be said frozen, "" for none.

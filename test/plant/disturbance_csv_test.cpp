@@ -133,8 +133,11 @@ TEST(DisturbanceCsv, OtherSeparatorsDecimalsAndMissingValues) {
   EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, -999, 3.5}));
   params.format.missing_values = {"-999", "Bad", "null", "#N/A"};
   EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, 1.5, 3.5}));
+  const CsvFormat found = formatOf(params.file);
+  EXPECT_EQ(found.separator, ';');
+  EXPECT_EQ(found.decimal, ',');
   CsvDisturbanceParams tabs = flowFrom("t\tq\n0\t1\n1\t2\n");
-  tabs.format.separator = '\t';
+  tabs.format = formatOf(tabs.file);
   EXPECT_EQ(flows(tabs, 1, 3600.0), (Values{1, 2}));
 }
 
@@ -144,7 +147,7 @@ TEST(DisturbanceCsv, ImplausibleCellsAreErrorsClippedHeldOrInterpolatedAndCounte
   params.channels[0].lower = 0.0;
   params.channels[0].upper = 1000.0;
   expectWords(errorOf(params, 4), ":3: column 'q': expected a value from 0 to 1000");
-  expectWords(errorOf(params, 4), "disturbance.csv.channels.q_i.implausible");
+  expectWords(errorOf(params, 4), "disturbance.csv.missing");
   params.channels[0].implausible = Implausible::kClip;
   EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 1000, 300, 0, 0, 600}));
   params.channels[0].implausible = Implausible::kHold;

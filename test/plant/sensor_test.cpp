@@ -55,16 +55,15 @@ TEST(LagChain, NinetyPercentOfAStepAfterT90) {
 }
 
 TEST(Sensor, ClassesAreThoseOfTheBenchmark) {
-  const SensorParams A = sensorOfClass(SensorClass::kA, 0.0, 10.0, true);
+  const SensorParams A = sensorOfClass(SensorClass::kA, 0.0, 10.0);
   EXPECT_EQ(A.lags, 2);
   EXPECT_NEAR(A.lag_s, 60.0 / 3.89, 1e-12);
-  EXPECT_DOUBLE_EQ(A.noise_std, 0.25);
-  const SensorParams C1 = sensorOfClass(SensorClass::kC1, 0.0, 50.0, false);
+  const SensorParams C1 = sensorOfClass(SensorClass::kC1, 0.0, 50.0);
   EXPECT_EQ(C1.lags, 8);
   EXPECT_NEAR(C1.lag_s, 1200.0 / 11.7724, 1e-12);
   EXPECT_EQ(C1.interval_s, 300.0);
   EXPECT_EQ(C1.noise_std, 0.0);
-  EXPECT_EQ(sensorOfClass(SensorClass::kD, 0.0, 1.0, false).interval_s, 1800.0);
+  EXPECT_EQ(sensorOfClass(SensorClass::kD, 0.0, 1.0).interval_s, 1800.0);
 }
 
 TEST(Sensor, AnIntervalHoldsTheReadingBetweenItsSamples) {

@@ -256,7 +256,7 @@ TEST(Simulation, BadParamsAreErrorsThatNameTheField) {
   names(errorOf([](P& p) { p.actuator.limits.lower.resize(2); }), "actuator.input_lower");
   names(errorOf([](P& p) { p.integrator.max_steps = 0; }), "integrator.max_steps");
   names(errorOf([](P& p) { p.sample_time_s = 0.0; }), "sampling.sample_time_s");
-  names(errorOf([](P& p) { p.start_time_s = 0.0; }), "sampling.start_time_s");
+  names(errorOf([](P& p) { p.start_time_s = 0.0; }), "start_time_s");
   names(errorOf([](P& p) { p.disturbance_commands = {{-1.0, command("q_i", 1.0)}}; }), "time_h");
   names(errorOf([](P& p) { p.disturbance_commands = {{0.0, command("q", 1.0)}}; }), "name 'q'");
 }

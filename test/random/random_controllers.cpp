@@ -101,8 +101,8 @@ std::string excitation(Dice& dice, RandomFrame& frame) {
               ", clock_s: " + exactText(dice.whole(1, 5) * frame.sample_time_s);
     if (kind == "multi_level") {
       const int shortest = dice.whole(1, 6);
-      text += ", hold_lower_s: " + exactText(shortest * frame.sample_time_s) +
-              ", hold_upper_s: " + exactText((shortest + dice.whole(0, 9)) * frame.sample_time_s);
+      text += ", hold_s: [" + exactText(shortest * frame.sample_time_s) + ", " +
+              exactText((shortest + dice.whole(0, 9)) * frame.sample_time_s) + "]";
     }
     if (kind == "steps")
       text += ", schedule: [{time_h: " + exactText(frame.hours(dice.whole(1, frame.samples))) +
@@ -129,29 +129,24 @@ std::string fmbpc(Dice& dice, RandomFrame& frame) {
   if (law == "iterated")
     text += "  horizon_steps: " + std::to_string(dice.whole(2, 12)) +
             "\n  iterations: " + std::to_string(dice.whole(1, 4)) + "\n";
-  if (dice.chance(0.3)) text += "  antecedent: measured\n";
-  if (dice.chance(0.3)) text += "  disturbance_feedforward: false\n";
   return text;
 }
 
 std::string fuzzyOptimal(Dice& dice, RandomFrame& frame) {
   return horizon(dice, 12) + costs(dice, frame, true) +
          "  solve: " + (dice.chance(0.8) ? "together" : "each") +
-         "\n  disturbance: " + dice.pick<std::string>({"inside", "outside", "none"}) +
-         "\n  disturbance_gain: " + dice.number(0.1, 1.0) + "\n" + randomObserver(dice, frame);
+         "\n  disturbance: " + dice.pick<std::string>({"inside", "outside", "none"}) + "\n" +
+         randomObserver(dice, frame);
 }
 
 std::string nmpc(Dice& dice, RandomFrame& frame) {
-  return horizon(dice, 5) + costs(dice, frame, true) +
-         "  max_iterations: " + std::to_string(dice.whole(1, 6)) + "\n" +
-         randomObserver(dice, frame);
+  return horizon(dice, 5) + costs(dice, frame, true) + randomObserver(dice, frame);
 }
 
 std::string swarm(Dice& dice, RandomFrame& frame) {
   return horizon(dice, 5) + costs(dice, frame, true) +
          "  swarm: {particles: " + std::to_string(dice.whole(2, 8)) +
-         ", iterations: " + std::to_string(dice.whole(1, 6)) +
-         ", seed: " + std::to_string(dice.whole(0, 99)) + "}\n" + randomObserver(dice, frame);
+         ", iterations: " + std::to_string(dice.whole(1, 6)) + "}\n" + randomObserver(dice, frame);
 }
 
 std::string hybrid(Dice& dice, RandomFrame& frame) {
@@ -179,7 +174,7 @@ std::string adaptivePi(Dice& dice, RandomFrame&) {
       "output: x_B, from: L, gain: 6.6, time_constant_min: 10.9, dead_time_min: 7",
       "output: x_B, from: V, gain: -19.4, time_constant_min: 14.4, dead_time_min: 3"};
   for (const auto& element : elements) text += "    - {" + element + "}\n";
-  if (dice.chance(0.5)) text += "  adaptation: {start_steps: 10}\n";
+  if (dice.chance(0.5)) text += "  adaptation: {}\n";
   return text;
 }
 

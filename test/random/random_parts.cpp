@@ -61,7 +61,6 @@ std::string record(Dice& dice, const std::vector<Quantity>& loads, const RandomF
   for (const auto& q : loads) channels += "      " + q.name + ": {column: c_" + q.name + "}\n";
   return std::string("  csv:\n    file: record.csv\n    time_column: t\n    missing: ") +
          (dice.chance(0.5) ? "hold" : "interpolate") + "\n    missing_values: [Bad]\n" +
-         (german ? "    separator: semicolon\n    decimal: comma\n" : "") +
          "    interpolation: " + (dice.chance(0.5) ? "hold" : "linear") +
          "\n    end: " + (dice.chance(0.5) ? "hold" : "repeat") + "\n    channels:\n" + channels;
 }
@@ -127,15 +126,7 @@ std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
   std::string text = "setpoint:\n  initial: " + byName(names, values()) + "\n";
   double time = 0.0;
   const int steps = dice.whole(0, 3);
-  const bool recipe = steps > 0 && dice.chance(0.15);
-  for (int i = 0; recipe && i < steps; ++i) {
-    std::string entry = byName(names, values());
-    entry.replace(0, 1,
-                  "{ramp_s: " + exactText(3600.0 * frame.hours(dice.whole(0, 8))) +
-                      ", hold_s: " + exactText(3600.0 * frame.hours(dice.whole(0, 12))) + ", ");
-    text += (i == 0 ? "  recipe:\n    - " : "    - ") + entry + "\n";
-  }
-  for (int i = 0; !recipe && i < steps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     time += dice.between(0.0, 0.4) * frame.samples;
     std::string entry = byName(names, values());
     entry.replace(0, 1, "{time_h: " + exactText(frame.hours(std::round(time))) + ", ");
@@ -199,7 +190,6 @@ std::string randomNoise(Dice& dice, const RandomFrame& frame) {
 
 std::string randomClp(Dice& dice, const RandomFrame& frame) {
   std::string text = "clp:\n  perturbation_steps: " + std::to_string(dice.whole(1, 12)) + "\n";
-  if (dice.chance(0.4)) text += "  mode2_steps: " + std::to_string(dice.whole(0, 8)) + "\n";
   std::vector<std::string> weights, upper;
   for (const auto& q : frame.outputs) {
     weights.push_back(Dice::rounded(dice.scale(0.01, 10.0)));

@@ -27,8 +27,8 @@ std::string sensor(Dice& dice, const Quantity& q, const RandomFrame& frame) {
   if (dice.chance(0.3)) keys.push_back("average: true");
   if (dice.chance(0.2)) {
     const int from = dice.whole(0, frame.samples);
-    keys.push_back("stuck_from_h: " + exactText(frame.hours(from)));
-    keys.push_back("stuck_to_h: " + exactText(frame.hours(from + dice.whole(1, 10))));
+    keys.push_back("stuck_h: [" + exactText(frame.hours(from)) + ", " +
+                   exactText(frame.hours(from + dice.whole(1, 10))) + "]");
   }
   if (dice.chance(0.3)) {
     const double reach = std::max(q.upper - q.lower, 0.0);
@@ -41,13 +41,11 @@ std::string sensor(Dice& dice, const Quantity& q, const RandomFrame& frame) {
 
 std::string doubts(Dice& dice, const Quantity& q, const RandomFrame& frame) {
   std::vector<std::string> keys{"substitute: " + dice.pick<std::string>({"hold", "last_good"})};
-  if (dice.chance(0.5)) {
+  if (dice.chance(0.5))
     keys.push_back("jump: " + Dice::rounded(widthOf(q) * dice.scale(0.02, 1.0)));
-    keys.push_back("jump_samples: " + std::to_string(dice.whole(1, 6)));
-  }
   if (dice.chance(0.3))
     keys.push_back("rate_per_h: " + Dice::rounded(widthOf(q) / frame.hours(dice.scale(1.0, 50.0))));
-  if (dice.chance(0.4)) keys.push_back(dice.pick<std::string>({"frozen: false", "repeated: true"}));
+  if (dice.chance(0.4)) keys.push_back(dice.pick<std::string>({"frozen: false", "frozen: true"}));
   return "    " + q.name + ": {" + join(keys) + "}\n";
 }
 
@@ -98,8 +96,8 @@ std::string randomGuard(Dice& dice, const RandomFrame& frame, const std::string&
   if (frame.model.empty() || !dice.chance(0.4)) return "";
   if (dice.chance(0.2)) return "guard: false\n";
   const double low = dice.between(0.05, 0.5);
-  std::string text = "guard:\n  trust_low: " + Dice::rounded(low) +
-                     "\n  trust_high: " + Dice::rounded(low + dice.between(0.1, 0.45)) +
+  std::string text = "guard:\n  trust: [" + Dice::rounded(low) + ", " +
+                     Dice::rounded(low + dice.between(0.1, 0.45)) + "]" +
                      "\n  lock_samples: " + std::to_string(dice.whole(0, 15)) +
                      "\n  return_samples: " + std::to_string(dice.whole(1, 10)) + "\n";
   if (!dice.chance(0.3)) return text;

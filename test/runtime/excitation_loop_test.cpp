@@ -32,41 +32,40 @@ TEST_F(ExcitationLoop, TimesInSecondsBecomeSamples) {
   const auto read = [&](const std::string& signal) {
     return readLoop(write("loop.yaml", experiment(signal)));
   };
-  const LoopFile loop = read("signal: multi_level, hold_lower_s: 7200, hold_upper_s: 43200");
+  const LoopFile loop = read("signal: multi_level, hold_s: [7200, 43200]");
   const ExcitationSignal& levels = loop.controllerParams<ExcitationParams>().signals.at(0);
   EXPECT_EQ(loop.controllerParams<ExcitationParams>().seed, 3U);
   EXPECT_EQ(levels.hold_lower_steps, 10);
   EXPECT_EQ(levels.hold_upper_steps, 60);
   EXPECT_EQ(levels.lower, loop.simulation.actuator.limits.lower[0]);
   EXPECT_EQ(levels.upper, loop.simulation.actuator.limits.upper[0]);
-  const LoopFile prbs = read("signal: prbs, clock_s: 1440, start_s: 3600");
+  const LoopFile prbs = read("signal: prbs, clock_s: 1440");
   EXPECT_EQ(prbs.controllerParams<ExcitationParams>().signals.at(0).clock_steps, 2);
-  EXPECT_EQ(prbs.controllerParams<ExcitationParams>().signals.at(0).start_steps, 5);
   const LoopFile steps = read("signal: steps, schedule: [{time_h: 0.2, value: 5}]");
   EXPECT_EQ(steps.controllerParams<ExcitationParams>().signals.at(0).schedule.at(0).step, 1);
   EXPECT_EQ(steps.ring.wait_for, (std::vector<std::string>{"loop_recorder", "fmbpc_controller"}));
 }
 
 TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
-  const std::string holds = "signal: multi_level, hold_lower_s: 720, ";
+  const std::string holds = "signal: multi_level, hold_s: [720, 1440], ";
   expectWords(errorWith("signal: prbs, clock_s: 700"),
               {"loop.yaml:10: controller.signals[0].clock_s", "whole number of samples of 720 s"});
   expectWords(errorWith("signal: prbs, clock_s: 0"), {"signals[0].clock_s", "at least 1"});
   expectWords(errorWith("signal: prbs, register_bits: 40"), {"signals[0].register_bits"});
   expectWords(errorWith("signal: prbs, upper: 1e6"), {"signals[0].upper"});
   expectWords(errorWith("signal: prbs, lower: 20, upper: 10"), {"upper", "above lower"});
-  expectWords(errorWith("signal: prbs, hold_lower_s: 2160"), {"hold_lower_s: unknown key"});
+  expectWords(errorWith("signal: prbs, hold_s: [720, 2160]"), {"hold_s: unknown key"});
   expectWords(errorWith("signal: none}\n  feedback:\n    - {input: q_r, output: y, gain: 1"),
               {"feedback[0].output"});
   expectWords(errorWith("signal: none}\n  feedback:\n    - {input: q_r, output: s"),
               {"feedback[0].gain"});
   expectWords(errorWith("signal: sine"), {"signals[0].signal", "prbs, multi_level, steps, none"});
-  expectWords(errorWith("signal: multi_level"), {"signals[0].hold_lower_s"});
-  expectWords(errorWith(holds + "hold_upper_s: 0"), {"signals[0].hold_upper_s"});
-  expectWords(errorWith("signal: multi_level, hold_lower_s: 3600, hold_upper_s: 2880"),
-              {"hold_upper_steps", "not below"});
-  expectWords(errorWith(holds + "hold_upper_s: 1440, levels: [1, -1]"), {"levels", "limits"});
-  expectWords(errorWith(holds + "hold_upper_s: 1440, levels: [1], lower: 0"), {"either levels"});
+  expectWords(errorWith("signal: multi_level"), {"signals[0].hold_s"});
+  expectWords(errorWith("signal: multi_level, hold_s: [720, 0]"), {"signals[0].hold_s"});
+  expectWords(errorWith("signal: multi_level, hold_s: [3600, 2880]"),
+              {"hold_s", "[shortest, longest]"});
+  expectWords(errorWith(holds + "levels: [1, -1]"), {"levels", "limits"});
+  expectWords(errorWith(holds + "levels: [1], lower: 0"), {"either levels"});
   expectWords(errorWith("signal: steps"), {"signals[0].schedule", "a list"});
   expectWords(errorWith("signal: steps, schedule: [{time_h: 0.3, value: 5}]"),
               {"schedule[0].time_h", "whole number of samples"});
@@ -79,7 +78,7 @@ TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
 TEST_F(ExcitationLoop, WithoutSetpointsTheIndicesAreAbsentInEveryReport) {
   const LoopFile loop =
       readLoop(write("loop.yaml", experiment("signal: multi_level, lower: 200, upper: 900, "
-                                             "hold_lower_s: 2160, hold_upper_s: 5760")));
+                                             "hold_s: [2160, 5760]")));
   const RunRecord record = runLoop(loop);
   const Summary summary = summarize(loop, record, 0.0);
   EXPECT_TRUE(summary.complete);

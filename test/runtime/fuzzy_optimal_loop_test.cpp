@@ -44,7 +44,6 @@ TEST(FuzzyOptimalLoop, MistakesAreNamed) {
   expectWords(error("controller.rules", "[{}, {}]"), {"controller.rules", "4 rules"});
   expectWords(error("controller.rules", "[{weight_moves: 1}]"), {"weight_moves"});
   expectWords(error("controller.disturbance", "aside"), {"controller.disturbance", "inside"});
-  expectWords(error("controller.disturbance_gain", "0"), {"controller.disturbance_gain"});
   expectWords(error("controller.weight_output", "0"), {"controller.weight_output"});
   expectWords(error("model", "{}"), {"model.file", "fuzzy_optimal"});
   expectWords(errorOf([] {

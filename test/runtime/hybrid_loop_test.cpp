@@ -1,4 +1,4 @@
-// Loops of the hybrid law: lists of inputs, recipes, windows and consumption as people write them,
+// Loops of the hybrid law: lists of inputs, windows and consumption as people write them,
 // and what is refused.
 #include <cmath>
 
@@ -11,20 +11,6 @@ namespace fpc {
 namespace loop_hybrid_loop_test {
 
 LoopFile read(const Overrides& overrides) { return readLoop("batch_fuzzy_eq45", overrides); }
-
-TEST(HybridLoop, ARecipeIsASchedule) {
-  const LoopFile loop =
-      read({{"setpoint.recipe",
-             "[{T: 30, hold_s: 1800}, {T: 50, ramp_s: 3600, hold_s: 900}, {T: 20, ramp_s: 900}]"}});
-  ASSERT_EQ(loop.setpoint.schedule.size(), 3U);
-  const double starts[] = {0.0, 0.5, 1.75}, ramps[] = {0.0, 1.0, 0.25}, T[] = {30.0, 50.0, 20.0};
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_DOUBLE_EQ(loop.setpoint.schedule[i].time_h, starts[i]);
-    EXPECT_DOUBLE_EQ(loop.setpoint.schedule[i].ramp_h, ramps[i]);
-    EXPECT_EQ(loop.setpoint.schedule[i].value[0], T[i]);
-    EXPECT_TRUE(std::isnan(loop.setpoint.schedule[i].value[1]));
-  }
-}
 
 TEST(HybridLoop, WindowsAndConsumptionAreSumsOverTheRecord) {
   const LoopFile loop =
@@ -62,7 +48,6 @@ TEST(HybridLoop, MistakesAreNamed) {
   expectWords(error("controller.cost.tracking", "{T: -1}"), {"controller.cost.tracking.T"});
   expectWords(error("controller.node_budget", "20"), {"budget", "28"});
   expectWords(error("actuator.fallback", "{kM: 0.5}"), {"fallback", "controller.inputs"});
-  expectWords(error("setpoint.schedule", "[{time_h: 1, T: 30}]"), {"setpoint.recipe", "either"});
   expectWords(error("report.windows", "[{name: w, from_s: 2, to_s: 1}]"),
               {"report.windows[0].to_s"});
   expectWords(error("report.consumption", "{steps: {kM: 1}}"), {"report.consumption.steps"});

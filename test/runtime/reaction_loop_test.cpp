@@ -1,5 +1,4 @@
-// Doubts that concern no single signal: an input that the outputs do not react to, a plant that
-// announces other bounds.
+// An input that the outputs do not react to.
 #include <utility>
 
 #include "runtime/factory.hpp"
@@ -58,54 +57,6 @@ TEST(Reaction, TheStirredTankIsNotDoubtedAndItsStuckValveIsFound) {
   EXPECT_EQ(stuck.session().reaction().code, EventCode::kActuatorIneffective);
   EXPECT_STREQ(stuck.session().reaction().signal, "q_c");
   EXPECT_TRUE(stuck.session().output().events.has(EventCode::kActuatorIneffective));
-}
-
-TEST(Reaction, TheLoopFileSaysWhatIsDone) {
-  for (const auto& [word, source] :
-       {std::pair{"hold", ActionSource::kHeld}, std::pair{"fallback", ActionSource::kFallback}}) {
-    BlindValve valve(Overrides{{"plausibility.reaction", word}});
-    valve.live(95, false);
-    valve.live(150, true);
-    EXPECT_EQ(valve.session().answer().base.source, source) << word;
-    EXPECT_TRUE(valve.session().output().events.has(EventCode::kActuatorIneffective));
-    valve.session().manual(true);
-    valve.session().manual(false);
-    EXPECT_EQ(valve.session().reaction().code, EventCode::kNone);
-  }
-}
-
-bool acts(const ControllerSession& session) {
-  const ActionSource source = session.answer().base.source;
-  return source == ActionSource::kBase || source == ActionSource::kClipped;
-}
-
-TEST(PlantBounds, AreHeldAgainstTheLoopFileAsItSays) {
-  for (const std::string word : {"say", "hold", "fallback"}) {
-    const LoopFile loop = readLoop(
-        "asp_case1", {{"plausibility.plant_bounds", word}, {"actuator.fallback.q_r", "300"}});
-    ControllerSession session = makeControllerSession(loop);
-    session.setModel(loop.model);
-    session.doubtPlant("plant_info: q_r may be 0..900, the loop file says 0..1600");
-    Measurement m = makeSimulation(loop).measurement();
-    ASSERT_EQ(session.receive(m), Receipt::kAnswered);
-    EXPECT_EQ(acts(session), word == "say") << word;
-    EXPECT_EQ(session.fellBack(), word == "fallback") << word;
-    session.doubtPlant("");
-    ++m.header.step;
-    m.header.time_ns += 720'000'000'000;
-    ASSERT_EQ(session.receive(m), Receipt::kAnswered);
-    EXPECT_TRUE(acts(session)) << word;
-  }
-}
-
-TEST(PlantBounds, AFallbackMustBeThere) {
-  PlausibilityParams params;
-  EXPECT_NO_THROW(params.validate(1, 0, 1));
-  params.plant_bounds = DoubtAction::kFallback;
-  expectWords(errorOf([&] { params.validate(1, 0, 1); }),
-              {"plausibility.plant_bounds", "actuator.fallback"});
-  params.fallback = Vector::Zero(1);
-  EXPECT_NO_THROW(params.validate(1, 0, 1));
 }
 
 }  // namespace loop_reaction_loop_test

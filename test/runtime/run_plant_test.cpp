@@ -158,7 +158,7 @@ TEST(RunPlant, BadFilesNameFileKeyAndWhatWasExpected) {
   // c: does not look ahead; d: no disturbance of the name; e: another sample time
   const std::string tanks =
       "loops: {a: {loop: four_tanks_left}, b: {loop: four_tanks_right}, c: {loop: four_tanks_left, "
-      "set: {controller.disturbance_feedforward: false}}, d: {loop: four_on_two}, e: {loop: "
+      "set: {controller: {type: fmbpc, law: general}}}, d: {loop: four_on_two}, e: {loop: "
       "heated_tank}, f: {loop: four_tanks_left, set: {clp.perturbation_steps: 60}}}\n";
   for (const auto& [text, key] : std::vector<std::pair<std::string, std::string>>{
            {"title: nothing\n", "loops"},

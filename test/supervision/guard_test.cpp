@@ -269,7 +269,7 @@ TEST_F(Guard, MistakesNameTheirKey) {
   const auto names = [](const std::string& error, const std::string& key) {
     EXPECT_NE(error.find(key), std::string::npos) << error;
   };
-  names(errorWith([](GuardParams& p) { p.trust_high = 0.1; }), "guard.trust_high");
+  names(errorWith([](GuardParams& p) { p.trust_high = 0.1; }), "guard.trust");
   names(errorWith([](GuardParams& p) { p.return_samples = 0; }), "guard.return_samples");
   names(errorWith([](GuardParams& p) { p.lock_samples = -1; }), "guard.lock_samples");
   names(errorWith([](GuardParams& p) { p.lock_step = 2.0; }), "guard.lock_step");

@@ -99,7 +99,7 @@ TEST_F(Standstill, ADisturbanceThatStandsIsReplacedByItsUsualValue) {
 
 TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsItsPlan) {
   StandstillParams p = params();
-  p.fallback_plan = {{0, {}, {0}, 1300.0, 5000.0}};
+  p.fallback_plan = {{0, {0}, 1300.0, 5000.0}};
   make(p, 100.0);
   const auto q_i = [](int k) { return k % 2 == 0 ? 1300.0 : 1560.0; };
   for (int k = 0; k < kWindow; ++k) see(58.0, q_i(k));

@@ -46,7 +46,7 @@ std::string signalsText(const char* key, const char* const* first, const char* c
 }
 
 std::string matrixText(const Vector& epsilon) {
-  std::string text = "matrix:\n  title: Heavy-oil fractionator, 7 x 5 (prett1987)\n";
+  std::string text = "matrix:\n";
   text += signalsText("outputs", kOutput, kOutput + kOutputs, "5");
   text += signalsText("inputs", kSource, kSource + kInputs, "0.5");
   text += signalsText("disturbances", kSource + kInputs, kSource + kSources, "0.5");

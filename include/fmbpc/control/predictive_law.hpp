@@ -69,11 +69,9 @@ class LawCore {
 
 /// What every predictive law is told.
 struct PredictiveLawParams {
-  Vector reference_pole;               ///< n_y, a_r
-  Vector reference_holdback;           ///< n_y, > 0: y_r stays so near to y; empty: wherever
-  bool preview{false};                 ///< references follow the setpoint schedule over the horizon
-  bool disturbance_feedforward{true};  ///< d(k) in the model; false: the nominal d
-  Vector disturbance_nominal;          ///< n_d, used without feedforward
+  Vector reference_pole;      ///< n_y, a_r
+  Vector reference_holdback;  ///< n_y, > 0: y_r stays so near to y; empty: wherever
+  bool preview{false};        ///< references follow the setpoint schedule over the horizon
   double transfer_decay{kTransferDecay};  ///< of the bias of a bumpless start, [0, 1)
   int prediction_steps{1};                ///< n_c of the predictive_action
   /// @throws InputError naming the field ("controller.reference_pole").
@@ -110,7 +108,7 @@ class PredictiveLaw : public Controller, public PlanView {
 
  protected:
   /// output_signals: "model" for the signal NAME_model of each output. @throws InputError of
-  /// limits, or without a nominal value for each disturbance.
+  /// limits.
   PredictiveLaw(const PredictiveLawParams& params, const InputLimits& limits,
                 const PlantInfo& plant, const std::vector<std::string>& output_signals,
                 const std::vector<std::string>& estimated = {});
@@ -139,7 +137,7 @@ class PredictiveLaw : public Controller, public PlanView {
 
   InputLimits limits_;
   PlantInfo plant_;
-  bool feedforward_, preview_;
+  bool preview_;
   Vector holdback_;             ///< n_y
   std::size_t output_signals_;  ///< of each output
   ReferenceTrajectory reference_;

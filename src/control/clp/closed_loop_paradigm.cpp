@@ -98,7 +98,7 @@ struct ClosedLoopParadigm::Workspace {
   bool findAim(const PredictiveAction& now);
   bool baseLawIsAllowed(const PredictiveAction& now);
   void assemble(const PredictiveAction& now);
-  void takeSolution(const PredictiveAction& now, Vector& action) const;
+  void takeSolution(Vector& action) const;
   void takeBase(const PredictiveAction& now, Vector& action) const;
   bool protectActuator(const PredictiveAction& now, bool solved, ControlAction& action);
 
@@ -142,30 +142,27 @@ bool ClosedLoopParadigm::Workspace::findAim(const PredictiveAction& now) {
   return terminal.compute(Phi, Q, KRK);
 }
 
-// Rolls the base law out over both modes; leaves its inputs in solution.x.
+// Rolls the base law out over the horizon; leaves its inputs in solution.x.
 bool ClosedLoopParadigm::Workspace::baseLawIsAllowed(const PredictiveAction& now) {
   state = now.state;
   input = now.input_base_unclipped;
   if (!rows.admitsFirst(input)) return false;
   const Eigen::Index n_c = sizes.n_c;
-  for (Eigen::Index i = 0; i < n_c + params.mode2_steps; ++i) {
+  for (Eigen::Index i = 0; i < n_c; ++i) {
     if (i > 0) {
       input_before.swap(input);
-      input = now.feedforward.col(std::min(i, n_c - 1));
+      input = now.feedforward.col(i);
       input -= now.K.lazyProduct(state);
-      const bool mode2 = i >= n_c;
-      if (mode2 ? !rows.admitsMode2(input) : !rows.admitsNext(input, input_before)) return false;
+      if (!rows.admitsNext(input, input_before)) return false;
     }
-    if (i < n_c) {
-      solution.x.segment(i * sizes.n_u, sizes.n_u) = input.cwiseQuotient(problem.input_scale);
-    }
+    solution.x.segment(i * sizes.n_u, sizes.n_u) = input.cwiseQuotient(problem.input_scale);
     next_state = now.offset_state;
     next_state += now.A.lazyProduct(state);
     next_state += now.B.lazyProduct(input);
     state.swap(next_state);
     output = now.offset_output;
     output += now.C.lazyProduct(state);
-    if (i < n_c && !rows.admitsOutput(output)) return false;
+    if (!rows.admitsOutput(output)) return false;
   }
   return true;
 }
@@ -184,12 +181,9 @@ void ClosedLoopParadigm::Workspace::assemble(const PredictiveAction& now) {
   rows.fill(now, prediction, problem);
 }
 
-// Eq. 26: u = u_ss + u_opt, which is U(0) itself; eq. 27: u = u_base + c(0).
-void ClosedLoopParadigm::Workspace::takeSolution(const PredictiveAction& now,
-                                                 Vector& action) const {
+// Eq. 26: u = u_ss + u_opt, which is U(0) itself.
+void ClosedLoopParadigm::Workspace::takeSolution(Vector& action) const {
   action = solution.x.head(sizes.n_u).cwiseProduct(problem.input_scale);
-  if (params.bounds != ClpBounds::kIncremental || params.action != ClpAction::kEq27) return;
-  action += now.input_base_unclipped + problem.perturbation_free.head(sizes.n_u);
 }
 
 SolveStatus ClosedLoopParadigm::Workspace::decide(const PredictiveAction& now, Vector& action) {
@@ -208,7 +202,7 @@ SolveStatus ClosedLoopParadigm::Workspace::decide(const PredictiveAction& now, V
   }
   solution = solver.solve(problem.qp);
   if (!solution.usable()) return solution.status;
-  takeSolution(now, action);
+  takeSolution(action);
   if (!action.allFinite()) return SolveStatus::kNumericalError;
   return rows.boundWins() ? SolveStatus::kBoundWins : SolveStatus::kSolved;
 }

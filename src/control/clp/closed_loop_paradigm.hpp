@@ -15,17 +15,13 @@ namespace fpc {
 enum class ClpCostKind { kLeastPerturbation, kLq };
 /// Input and move limits, or increments around the moving steady input as the paper has them.
 enum class ClpBounds { kAbsolute, kIncremental };
-/// With incremental bounds: eq26 u = u_ss + u_opt, or eq27 u = u_base + c.
-enum class ClpAction { kEq26, kEq27 };
 
 inline std::vector<std::string> wordsOf(ClpCostKind) { return {"least_perturbation", "lq"}; }
 inline std::vector<std::string> wordsOf(ClpBounds) { return {"absolute", "incremental"}; }
-inline std::vector<std::string> wordsOf(ClpAction) { return {"eq26", "eq27"}; }
 
 /// Section `clp` of a loop file.
 struct ClpParams {
   int perturbation_steps{42};  ///< n_c, samples of mode 1
-  int mode2_steps{0};          ///< samples of mode 2 whose input limits are imposed softly
   ClpCostKind cost{ClpCostKind::kLeastPerturbation};
   Vector weight_perturbation;  ///< n_u, of |c|^2 (least_perturbation); default 1
   Vector weight_tracking;      ///< n_y, of |y - y_r|^2 (least_perturbation); default 0
@@ -33,7 +29,6 @@ struct ClpParams {
   Vector weight_input;         ///< n_u, R (lq); default 1
   ClpBounds bounds{ClpBounds::kAbsolute};
   Vector increment_lower, increment_upper;  ///< n_u, around the moving steady input (incremental)
-  ClpAction action{ClpAction::kEq26};
   std::vector<int> target_outputs;  ///< outputs that define the steady state (lq, incremental), as
                                     ///< many as inputs; default all of them where n_y = n_u
   Vector output_lower, output_upper;  ///< n_y, soft; infinite if absent. Finite ones give way to
@@ -54,7 +49,7 @@ struct ClpProblem {
   Vector perturbation_free;        ///< t
   QpProblem qp;        ///< in v = (U / input_scale, slack / slack_scale), cost over cost_scale
   Vector input_scale;  ///< n_u, powers of two near the input range: scaling is exact
-  Vector slack_scale;  ///< one per softly limited output, then n_u if mode 2 is limited
+  Vector slack_scale;  ///< one per softly limited output
   double cost_scale{1.0};
   double cost_constant{};  ///< J(0)
 };

@@ -27,17 +27,10 @@ ClpLimits::ClpLimits(const ClpParams& params, const InputLimits& limits, const C
       increment_upper_(params.increment_upper),
       incremental_(params.bounds == ClpBounds::kIncremental),
       penalty_(params.output_penalty),
-      mode2_steps_(params.mode2_steps),
       lower_(s.n_u),
       upper_(s.n_u),
       first_lower_(s.n_u),
-      first_upper_(s.n_u),
-      law_power_(s.n_u, s.n_x),
-      next_power_(s.n_u, s.n_x),
-      Phi_(s.n_x, s.n_x),
-      state_(s.n_x),
-      next_state_(s.n_x),
-      input_(s.n_u) {
+      first_upper_(s.n_u) {
   for (Eigen::Index a = 0; a < s.n_u && !incremental_; ++a) {
     if (std::isfinite(limits_.move[a])) limited_moves_.push_back(a);
   }
@@ -47,8 +40,7 @@ ClpLimits::ClpLimits(const ClpParams& params, const InputLimits& limits, const C
     if (sides > 0) limited_outputs_.push_back(o);
     n_rows_ += sides * s.n_c;
   }
-  n_rows_ += 2 * s.n_u * mode2_steps_;
-  n_slacks_ = static_cast<Eigen::Index>(limited_outputs_.size()) + (mode2_steps_ > 0 ? s.n_u : 0);
+  n_slacks_ = static_cast<Eigen::Index>(limited_outputs_.size());
 }
 
 void ClpLimits::prepare(ClpProblem& problem) const {
@@ -58,7 +50,6 @@ void ClpLimits::prepare(ClpProblem& problem) const {
     problem.input_scale[a] = powerOfTwoNear(limits_.upper[a] - limits_.lower[a]);
   }
   problem.slack_scale = Vector::Ones(n_slacks_);
-  if (mode2_steps_ > 0) problem.slack_scale.tail(n_u) = problem.input_scale;
   QpProblem& qp = problem.qp;
   qp.x_lower.tail(n_slacks_).setZero();
   qp.H.diagonal().tail(n_slacks_).setConstant(penalty_);
@@ -91,10 +82,6 @@ void ClpLimits::fillSlackColumns(ClpProblem& problem) const {
     side(std::isfinite(output_upper_[o]), -1.0, sizes_.n_c);
     side(std::isfinite(output_lower_[o]), 1.0, sizes_.n_c);
     ++slack;
-  }
-  for (Eigen::Index a = 0; a < sizes_.n_u && mode2_steps_ > 0; ++a, ++slack) {
-    side(true, -1.0, mode2_steps_);
-    side(true, 1.0, mode2_steps_);
   }
 }
 
@@ -138,10 +125,8 @@ bool ClpLimits::admitsNext(VectorRef input, VectorRef previous) const {
   for (const Eigen::Index a : limited_moves_) {
     if (!(std::abs(input[a] - previous[a]) <= limits_.move[a])) return false;
   }
-  return admitsMode2(input);
+  return inside(input, lower_, upper_);
 }
-
-bool ClpLimits::admitsMode2(VectorRef input) const { return inside(input, lower_, upper_); }
 
 bool ClpLimits::admitsOutput(VectorRef output) const {
   return inside(output, output_lower_, output_upper_);
@@ -161,7 +146,6 @@ void ClpLimits::fill(const PredictiveAction& now, const ClpPrediction& predictio
   for (std::size_t s = 0; s < limited_outputs_.size(); ++s) {
     row = fillOutput(now, prediction, static_cast<Eigen::Index>(s), row, problem);
   }
-  if (mode2_steps_ > 0) fillMode2(now, prediction, row, problem);
 }
 
 Eigen::Index ClpLimits::fillOutput(const PredictiveAction& now, const ClpPrediction& prediction,
@@ -198,42 +182,6 @@ Eigen::Index ClpLimits::fillOutput(const PredictiveAction& now, const ClpPredict
     row += n_c;
   }
   return row;
-}
-
-// u(n_c + m) = -K Phi^m x(n_c) + what the law does from x_free(n_c); the last law_offset is held.
-void ClpLimits::fillMode2(const PredictiveAction& now, const ClpPrediction& prediction,
-                          Eigen::Index row, ClpProblem& problem) {
-  const Eigen::Index n = sizes_.inputs(), n_u = sizes_.n_u;
-  const auto held_offset = prediction.law_offset.col(sizes_.n_c - 1);
-  QpProblem& qp = problem.qp;
-  Phi_ = now.A;
-  Phi_ -= now.B.lazyProduct(now.K);
-  law_power_ = now.K;
-  state_ = prediction.state_free.col(sizes_.n_c);
-  for (Eigen::Index m = 0; m < mode2_steps_; ++m) {
-    input_ = held_offset;
-    input_ -= now.K.lazyProduct(state_);
-    for (Eigen::Index a = 0; a < n_u; ++a) {
-      const double unit = problem.input_scale[a];
-      const Eigen::Index high = row + 2 * a * mode2_steps_ + m, low = high + mode2_steps_;
-      for (Eigen::Index p = 0; p < n; ++p) {
-        const Eigen::Index b = p % n_u;
-        const auto reached = prediction.state_pulse.col(n - n_u - p + 2 * b);
-        qp.A(high, p) = -law_power_.row(a).dot(reached) * problem.input_scale[b] / unit;
-        qp.A(low, p) = qp.A(high, p);
-      }
-      qp.a_upper[high] = (upper_[a] - input_[a]) / unit;
-      qp.a_lower[low] = (lower_[a] - input_[a]) / unit;
-      qp.a_lower[high] = -kInfinity;
-      qp.a_upper[low] = kInfinity;
-    }
-    next_state_ = now.offset_state;
-    next_state_ += now.A.lazyProduct(state_);
-    next_state_ += now.B.lazyProduct(input_);
-    state_.swap(next_state_);
-    next_power_.noalias() = law_power_.lazyProduct(Phi_);
-    law_power_.swap(next_power_);
-  }
 }
 
 }  // namespace fpc

@@ -1,5 +1,5 @@
 // Limits of the closed-loop paradigm as a QP sees them: input limits are plain bounds, move limits
-// fixed rows, output limits and the inputs of mode 2 soft rows that share one slack per signal.
+// fixed rows, output limits soft rows that share one slack per output.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ struct ClpParams;
 struct ClpProblem;
 
 /// Rows, in this order: moves u(i) - u(i-1) for i >= 1; per limited output its upper, then its
-/// lower rows; mode 2 likewise per input. The first move is folded into the bounds of u(0); where
+/// lower rows. The first move is folded into the bounds of u(0); where
 /// they conflict the bound wins. Allocates at construction only.
 class ClpLimits {
  public:
@@ -35,7 +35,6 @@ class ClpLimits {
   /// Whether a sequence is allowed, sample by sample (exact comparisons; NaN is not allowed).
   bool admitsFirst(VectorRef input) const;
   bool admitsNext(VectorRef input, VectorRef previous) const;
-  bool admitsMode2(VectorRef input) const;
   bool admitsOutput(VectorRef output) const;
   /// Writes bounds and soft rows of this sample; the first move_rows of A are left as prepared.
   void fill(const PredictiveAction& now, const ClpPrediction& prediction, ClpProblem& problem);
@@ -43,8 +42,6 @@ class ClpLimits {
  private:
   Eigen::Index fillOutput(const PredictiveAction& now, const ClpPrediction& prediction,
                           Eigen::Index slack, Eigen::Index row, ClpProblem& problem) const;
-  void fillMode2(const PredictiveAction& now, const ClpPrediction& prediction, Eigen::Index row,
-                 ClpProblem& problem);
   void fillSlackColumns(ClpProblem& problem) const;
 
   ClpSizes sizes_;
@@ -54,13 +51,10 @@ class ClpLimits {
   Vector output_weight_, increment_lower_, increment_upper_;
   bool incremental_;
   double penalty_;
-  Eigen::Index mode2_steps_;
   std::vector<Eigen::Index> limited_outputs_, limited_moves_;
   Eigen::Index n_slacks_{}, n_rows_{};
   Vector lower_, upper_, first_lower_, first_upper_;
   bool bound_wins_{false};
-  Matrix law_power_, next_power_, Phi_;  ///< mode 2: K Phi^m and its successor
-  Vector state_, next_state_, input_;
 };
 
 }  // namespace fpc

@@ -53,7 +53,6 @@ bool needsTarget(const ClpParams& params) {
 
 void ClpParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   require(perturbation_steps >= 1, "clp.perturbation_steps", "an integer >= 1");
-  require(mode2_steps >= 0, "clp.mode2_steps", "an integer >= 0");
   requireWeights(weight_perturbation, n_u, true, "weight_perturbation");
   requireWeights(weight_tracking, n_y, false, "weight_tracking");
   requireWeights(weight_state_output, n_y, false, "weight_state_output");

@@ -73,11 +73,10 @@ void validateLevels(const ExcitationSignal& s, const std::string& key, const Inp
 void validateSignal(const ExcitationSignal& s, const std::string& key, const InputLimits& limits) {
   require(s.input >= 0 && s.input < limits.lower.size(), key + "input",
           "one of the plant's inputs");
-  require(s.start_steps >= 0, key + "start_steps", "a number of samples >= 0");
   require(s.clock_steps >= 1, key + "clock_steps", "a number of samples >= 1");
   require(s.hold_lower_steps >= 1, key + "hold_lower_steps", "a number of samples >= 1");
-  require(s.hold_upper_steps >= s.hold_lower_steps, key + "hold_upper_steps",
-          "a number of samples not below hold_lower_steps");
+  require(s.hold_upper_steps >= s.hold_lower_steps, key + "hold_s",
+          "[shortest, longest] time of a level");
   require(
       s.register_bits >= ShiftRegister::kFewestBits && s.register_bits <= ShiftRegister::kMostBits,
       key + "register_bits", "2..20");
@@ -141,7 +140,7 @@ void ExcitationStream::rewind() {
   register_ = first_register_;
   entry_ = 0;
   begin_ = 0;
-  end_ = signal_.start_steps;
+  end_ = 0;
   value_ = start_input_;
   if (signal_.signal == ExcitationKind::kNone) end_ = kForEver;
 }
@@ -161,8 +160,7 @@ void ExcitationStream::next() {
     nextLevel();
   } else {
     if (entry_ > 0) value_ = signal_.schedule[entry_ - 1].value;
-    end_ = entry_ < signal_.schedule.size() ? signal_.start_steps + signal_.schedule[entry_].step
-                                            : kForEver;
+    end_ = entry_ < signal_.schedule.size() ? signal_.schedule[entry_].step : kForEver;
     ++entry_;
   }
 }

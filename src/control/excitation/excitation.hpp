@@ -29,7 +29,6 @@ inline std::vector<std::string> wordsOf(ExcitationKind) {
 struct ExcitationSignal {
   int input{};  ///< index
   ExcitationKind signal{ExcitationKind::kNone};
-  int start_steps{0};          ///< the start input before this sample
   double lower{}, upper{};     ///< prbs: both levels; multi_level: levels are uniform between them
   std::vector<double> levels;  ///< multi_level: drawn from this list instead
   int register_bits{10};       ///< prbs: repeats after 2^bits - 1 clocks; 2..20

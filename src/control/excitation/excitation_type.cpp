@@ -24,21 +24,13 @@ std::int64_t wholeSamples(const YamlSection& section, const std::string& key, do
   return static_cast<std::int64_t>(whole);
 }
 
-/// A time in seconds; true if it is there.
-bool readTime(YamlSection& section, const std::string& key, int& steps, int lower,
-              double sample_time_s) {
-  double time_s = 0.0;
-  section.number(key, time_s, kFiniteNotNegative);
-  if (!section.has(key)) return false;
-  steps = static_cast<int>(wholeSamples(section, key, time_s, sample_time_s));
-  if (steps < lower) section.fail(key, "at least " + std::to_string(lower) + " samples");
-  return true;
-}
-
 void readRegister(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
   item.integer("register_bits", signal.register_bits, ShiftRegister::kFewestBits,
                ShiftRegister::kMostBits);
-  readTime(item, "clock_s", signal.clock_steps, 1, sample_time_s);
+  double clock_s = sample_time_s;
+  item.number("clock_s", clock_s, kFiniteNotNegative);
+  signal.clock_steps = static_cast<int>(wholeSamples(item, "clock_s", clock_s, sample_time_s));
+  if (signal.clock_steps < 1) item.fail("clock_s", "at least 1 sample");
 }
 
 void readHolds(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
@@ -46,10 +38,16 @@ void readHolds(YamlSection& item, ExcitationSignal& signal, double sample_time_s
   if (item.has("levels") && (item.has("lower") || item.has("upper")))
     item.fail("levels", "either levels or lower and upper");
   if (item.has("levels") && signal.levels.empty()) item.fail("levels", "at least one number");
-  if (!readTime(item, "hold_lower_s", signal.hold_lower_steps, 1, sample_time_s))
-    item.fail("hold_lower_s", "the shortest time of a level");
-  if (!readTime(item, "hold_upper_s", signal.hold_upper_steps, 1, sample_time_s))
-    item.fail("hold_upper_s", "the longest time of a level");
+  std::vector<double> hold_s;
+  item.numbers("hold_s", hold_s, kFiniteNotNegative);
+  if (hold_s.size() != 2) item.fail("hold_s", "[shortest, longest] time of a level");
+  const auto samples = [&](double time_s) {
+    const std::int64_t whole = wholeSamples(item, "hold_s", time_s, sample_time_s);
+    if (whole < 1) item.fail("hold_s", "at least 1 sample");
+    return static_cast<int>(whole);
+  };
+  signal.hold_lower_steps = samples(hold_s[0]);
+  signal.hold_upper_steps = samples(hold_s[1]);
 }
 
 void readStaircase(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
@@ -86,8 +84,6 @@ ExcitationSignal readSignal(YamlSection& item, const ControllerContext& loop) {
   if (signal.signal == ExcitationKind::kPrbs) readRegister(item, signal, sample_time_s);
   if (signal.signal == ExcitationKind::kMultiLevel) readHolds(item, signal, sample_time_s);
   if (signal.signal == ExcitationKind::kSteps) readStaircase(item, signal, sample_time_s);
-  if (signal.signal != ExcitationKind::kNone)
-    readTime(item, "start_s", signal.start_steps, 0, sample_time_s);
   item.finish();
   return signal;
 }

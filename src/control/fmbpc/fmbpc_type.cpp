@@ -58,7 +58,6 @@ FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   readOption(section, "realisation", params.realisation);
   section.integer("delay_steps", params.delay_steps, 0, 1000);
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
-  readOption(section, "antecedent", params.antecedent);
   section.number("offset_gain", params.offset_gain, {0.0, 1.0});
   readObserver(section, params.observer, loop, ObserverKey::kEstimated);
   checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
@@ -78,7 +77,7 @@ SignalUse usedByFmbpc(const FmbpcParams& params, const ControllerContext& loop) 
   else
     use.followed = weighted(params.weight_output);
   use.estimated = namesOf(params.observer.estimated);
-  use.looks_ahead = params.law == FmbpcForm::kIterated && params.disturbance_feedforward;
+  use.looks_ahead = params.law == FmbpcForm::kIterated;
   return use;
 }
 

@@ -8,7 +8,7 @@
 namespace fpc {
 
 InternalModel::InternalModel(const TsModel& model, const FmbpcParams& params)
-    : at_measured_(params.antecedent == FmbpcAntecedent::kMeasured),
+    : at_measured_(params.realisation == FmbpcRealisation::kLiteral),
       local_(withoutDelay(model, params.delay_steps)),
       measured_(Vector::Zero(local_.stateSize())),
       offset_output_(Vector::Zero(countOf(model.outputs))),

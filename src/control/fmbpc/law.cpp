@@ -40,7 +40,7 @@ void FmbpcLaw::reset(const Measurement& start) {
 }
 
 bool FmbpcLaw::expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) {
-  if (params_.law != FmbpcForm::kIterated || !params_.disturbance_feedforward) return false;
+  if (params_.law != FmbpcForm::kIterated) return false;
   forecast_.expect(k, disturbance, ahead);
   return true;
 }

@@ -14,16 +14,14 @@ namespace fpc {
 /// How u(k) follows from the model: u = e_x / m2, weighted, or the best path.
 enum class FmbpcForm { kPublished, kGeneral, kIterated };
 /// Where the state comes from. parallel: its own, y_m = z; realigned: measurements; literal:
-/// parallel in the state space of blazic2007 (CanonicalForm); observer: a ModelObserver.
+/// parallel in the state space of blazic2007 (CanonicalForm), with rules at measured outputs;
+/// observer: a ModelObserver.
 enum class FmbpcRealisation { kParallel, kRealigned, kLiteral, kObserver };
-/// Outputs in the antecedents of the rules.
-enum class FmbpcAntecedent { kModel, kMeasured };
 
 inline std::vector<std::string> wordsOf(FmbpcForm) { return {"published", "general", "iterated"}; }
 inline std::vector<std::string> wordsOf(FmbpcRealisation) {
   return {"parallel", "realigned", "literal", "observer"};
 }
-inline std::vector<std::string> wordsOf(FmbpcAntecedent) { return {"model", "measured"}; }
 
 struct FmbpcParams : PredictiveLawParams {
   FmbpcForm law{FmbpcForm::kPublished};
@@ -38,7 +36,6 @@ struct FmbpcParams : PredictiveLawParams {
   int forecast_memory_steps{0};  ///< over which it is judged how far to trust that; 0: wholly
   double forecast_pole{0.975};   ///< how today's difference fades per sample, [0, 1]
   FmbpcRealisation realisation{FmbpcRealisation::kParallel};
-  FmbpcAntecedent antecedent{FmbpcAntecedent::kModel};
   int delay_steps{0};           ///< transport delay taken out of the model, see FmbpcLaw
   int reference_lead_steps{0};  ///< added to every time at which a reference is met
   double offset_gain{0.2};      ///< filter gain of the one-step error w_hat (realigned)

@@ -22,12 +22,8 @@ void requireCombination(const FmbpcParams& p) {
           "controller.reference_lead_steps", "an integer from 0 to 100000");
   require(p.observer.estimated.empty() || p.realisation == FmbpcRealisation::kObserver,
           "controller.realisation", "observer where controller.observer.estimated asks for one");
-  require(p.observer.estimated.empty() || p.antecedent == FmbpcAntecedent::kModel,
-          "controller.antecedent", "model beside controller.observer.estimated");
   require(!literal || p.law == FmbpcForm::kPublished, "controller.law",
           "published for realisation literal");
-  require(!literal || p.antecedent == FmbpcAntecedent::kMeasured, "controller.antecedent",
-          "measured for realisation literal");
 }
 
 }  // namespace

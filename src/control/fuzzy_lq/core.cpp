@@ -124,7 +124,7 @@ void FuzzyOptimalCore::estimate(const LawSample& sample) {
     for (Index i = 0; i < error_.size(); ++i) {
       const double one_step = seen_[i] - predicted_[local_.outputState(i)];
       double& d = rule.disturbance[i];
-      d = begun_ && !observer_ ? d + params_.disturbance_gain * (one_step - d) : one_step;
+      d = begun_ && !observer_ ? d + (one_step - d) : one_step;
     }
   }
   begun_ = true;

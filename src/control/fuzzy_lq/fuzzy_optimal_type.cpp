@@ -11,7 +11,6 @@ namespace {
 void readWeights(YamlSection& section, QuadraticWeights& weights, const ControllerContext& loop) {
   section.byName("weight_output", weights.output, loop.outputs(), kFiniteNotNegative);
   section.byName("weight_move", weights.move, loop.inputs(), kFiniteNotNegative);
-  section.byName("weight_input", weights.input, loop.inputs(), kFiniteNotNegative);
 }
 
 void readTuning(YamlSection& section, const ControllerContext& loop, FuzzyOptimalTuning& tuning) {
@@ -21,6 +20,7 @@ void readTuning(YamlSection& section, const ControllerContext& loop, FuzzyOptima
   section.integer("horizon_steps", tuning.horizon_steps, 1, 1000);
   section.integer("move_steps", tuning.move_steps, 1, 1000);
   readWeights(section, tuning.weight, loop);
+  section.byName("weight_input", tuning.weight.input, loop.inputs(), kFiniteNotNegative);
   for (auto& item : section.list("rules")) {
     tuning.rules.push_back(tuning.weight);
     readWeights(item, tuning.rules.back(), loop);
@@ -35,10 +35,8 @@ FuzzyOptimalParams readFuzzyOptimal(YamlSection& section, const ControllerContex
   readPredictiveLaw(section, loop, params);
   readOption(section, "solve", params.solve);
   readOption(section, "disturbance", params.disturbance);
-  section.number("disturbance_gain", params.disturbance_gain, {0.0, 1.0, true});
   params.observe = readObserver(section, params.observer, loop) &&
-                   params.disturbance == FuzzyOptimalDisturbance::kInside &&
-                   params.disturbance_gain == 1.0;
+                   params.disturbance == FuzzyOptimalDisturbance::kInside;
   checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
   return params;
 }

@@ -39,7 +39,6 @@ struct FuzzyOptimalParams : PredictiveLawParams {
   FuzzyOptimalTuning tuning;
   FuzzyOptimalSolve solve{FuzzyOptimalSolve::kTogether};
   FuzzyOptimalDisturbance disturbance{FuzzyOptimalDisturbance::kInside};
-  double disturbance_gain{1.0};  ///< (0, 1]: how far d follows the newest error
   bool observe{false};      ///< state and d come from an observer with stated noise; inside only
   ObserverParams observer;  ///< used if observe
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field

@@ -26,8 +26,6 @@ void FuzzyOptimalTuning::validate(Eigen::Index n_y, Eigen::Index n_u) const {
 
 void FuzzyOptimalParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   tuning.validate(n_y, n_u);
-  require(disturbance_gain > 0.0 && disturbance_gain <= 1.0, "controller.disturbance_gain",
-          "a number > 0 and <= 1");
   require(!observe || disturbance == FuzzyOptimalDisturbance::kInside, "controller.observer",
           "disturbance inside; got '" + wordOf(disturbance) + "'");
   if (observe) observer.validate(n_y);

@@ -82,7 +82,7 @@ double HybridEvolution::blockCost(VectorRef before, int choice) const {
     if (matches(t.from, before) && matches(t.to, now)) return kInfinity;
   for (Index i = 0; i < now.size(); ++i)
     if (std::abs(now[i] - before[i]) > limits_.move[i] * (1.0 + kSameInput)) return kInfinity;
-  double cost = params_.hold_samples * params_.weight_consumption.dot(now);
+  double cost = 0.0;
   for (const SwitchTerm& s : params_.switching)
     cost += s.weight * std::max(before[s.before], 0.0) * now[s.after];
   for (const TravelTerm& t : params_.travel)

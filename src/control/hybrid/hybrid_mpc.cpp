@@ -36,8 +36,7 @@ void HybridMpcParams::validate(Index n_y, Index n_u) const {
   require(hold_samples >= 1, "controller.hold_samples", "a number >= 1");
   require(horizon_blocks >= 1, "controller.horizon_blocks", "a number >= 1");
   requireNonNegative(weight_tracking, n_y, "controller.cost.tracking");
-  requireNonNegative(weight_consumption, n_u, "controller.cost.consumption");
-  bool signs = (weight_consumption.transpose() * choices).minCoeff() >= 0.0;
+  bool signs = true;
   for (const SwitchTerm& s : switching) {
     checkTerm(s.weight, s.before, n_u, "controller.cost.switching");
     checkTerm(s.weight, s.after, n_u, "controller.cost.switching");

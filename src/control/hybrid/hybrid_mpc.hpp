@@ -42,11 +42,10 @@ inline std::vector<std::string> wordsOf(BranchBound) { return {"cost", "reach"};
 struct HybridMpcParams {
   Matrix choices;  ///< n_u n_choices, the input vectors that may be sent, one per column
   std::vector<ForbiddenTransition> forbidden_transitions;
-  int hold_samples{15};       ///< Z, samples of a block
-  int horizon_blocks{4};      ///< H_Z
-  bool preview{true};         ///< the recipe ahead is known; otherwise the present setpoint is held
-  Vector weight_tracking;     ///< n_y, of (y - setpoint)^2, per sample
-  Vector weight_consumption;  ///< n_u, of the input, per sample
+  int hold_samples{15};    ///< Z, samples of a block
+  int horizon_blocks{4};   ///< H_Z
+  bool preview{true};      ///< the recipe ahead is known; otherwise the present setpoint is held
+  Vector weight_tracking;  ///< n_y, of (y - setpoint)^2, per sample
   std::vector<SwitchTerm> switching;
   std::vector<TravelTerm> travel;
   BranchBound bound{BranchBound::kReach};

@@ -55,9 +55,7 @@ void readTransitions(YamlSection& section, const std::vector<std::string>& names
 void readCost(YamlSection& controller, HybridMpcParams& params, const ControllerContext& loop) {
   YamlSection cost = controller.section("cost");
   params.weight_tracking = Vector::Zero(loop.outputCount());
-  params.weight_consumption = Vector::Zero(loop.inputCount());
   cost.byName("tracking", params.weight_tracking, loop.outputs(), kFiniteNotNegative);
-  cost.byName("consumption", params.weight_consumption, loop.inputs(), kFinite);
   for (auto& item : cost.list("switching")) {
     SwitchTerm term;
     term.before = indexByName(item, "before", loop.inputs());

@@ -8,7 +8,6 @@ namespace {
 NmpcParams readNmpc(YamlSection& section, const ControllerContext& loop) {
   NmpcParams params;
   params.horizon = readHorizon(section, loop);
-  section.integer("max_iterations", params.solver.max_iterations, 1, 10000);
   section.integer("integration_steps", params.integration_steps, 1, 10000);
   if (!loop.plant_model)
     section.fail("type", "a plant that can be simulated: nmpc predicts with the plant's equations");

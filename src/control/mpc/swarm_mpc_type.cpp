@@ -10,7 +10,6 @@ SwarmParams readSwarm(YamlSection& controller) {
   YamlSection section = controller.section("swarm");
   section.integer("particles", params.particles, 1, 100000);
   section.integer("iterations", params.iterations, 0, 100000);
-  section.seed("seed", params.seed);
   section.finish();
   return params;
 }

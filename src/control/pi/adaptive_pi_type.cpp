@@ -66,9 +66,6 @@ void readAdaptation(YamlSection& section, AdaptationParams& params) {
   bool off = false;
   YamlSection item = section.sectionOrOff("adaptation", off);
   params.enabled = section.has("adaptation") && !off;
-  item.number("forgetting", params.estimator.forgetting, {0.0, 1.0, true});
-  item.integer("start_steps", params.start_steps, 0);
-  checked(item, [&] { params.validate(); });
   item.finish();
 }
 

@@ -35,16 +35,6 @@ void validateSchedule(const std::vector<GainPoint>& points, const std::string& k
   }
 }
 
-void validateSignal(const PiScheduleSignal& signal, const std::string& key, Eigen::Index n_y,
-                    Eigen::Index n_u, Eigen::Index n_d) {
-  using Kind = PiScheduleSignal::Kind;
-  const Eigen::Index n = signal.kind == Kind::kInput         ? n_u
-                         : signal.kind == Kind::kDisturbance ? n_d
-                                                             : n_y;
-  require(signal.index >= 0 && (signal.kind == Kind::kFollowedOutput || signal.index < n), key,
-          "a signal of the plant");
-}
-
 void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, Eigen::Index n_u,
                   Eigen::Index n_d) {
   require(loop.input >= 0 && loop.input < n_u, key + "input", "one of the plant's inputs");
@@ -54,7 +44,6 @@ void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, 
   require(std::isfinite(loop.bias), key + "bias", "a finite number");
   validateSchedule(loop.gain_schedule, key + "gain_schedule");
   loop.terms.validate(key, n_d);
-  validateSignal(loop.terms.schedule, key + "schedule_by", n_y, n_u, n_d);
 }
 
 }  // namespace
@@ -118,35 +107,15 @@ void PiController::refer(const SetpointSource& setpoint, std::uint32_t step, Vec
   if (path_) path_->advance(setpoint, step);
 }
 
-double PiController::errorOf(const PiLoop& loop, const Measurement& now,
-                             const SetpointSource& setpoint, double aim) const {
+double PiController::errorOf(const PiLoop& loop, const Measurement& now, double aim) const {
   const double difference = aim - now.outputs[loop.output];
   return (loop.reverse ? -difference : difference) *
-         scheduledGain(loop.gain_schedule, scheduleSignal(loop, now, setpoint));
-}
-
-double PiController::scheduleSignal(const PiLoop& loop, const Measurement& now,
-                                    const SetpointSource& setpoint) const {
-  const int index = loop.terms.schedule.index;
-  switch (loop.terms.schedule.kind) {
-    case PiScheduleSignal::Kind::kOutput:
-      return now.outputs[index];
-    case PiScheduleSignal::Kind::kSetpoint:
-      return setpoint.present()[index];
-    case PiScheduleSignal::Kind::kDisturbance:
-      return now.disturbances[index];
-    case PiScheduleSignal::Kind::kInput:
-      return now.input_applied[index];
-    case PiScheduleSignal::Kind::kFollowedOutput:
-      break;
-  }
-  return now.outputs[loop.output];
+         scheduledGain(loop.gain_schedule, now.outputs[loop.output]);
 }
 
 // u = bias + kp g e + ki int g e dt
-void PiController::propose(const PiLoop& loop, const Measurement& now,
-                           const SetpointSource& setpoint, LoopState& state) const {
-  state.error = errorOf(loop, now, setpoint, state.aim);
+void PiController::propose(const PiLoop& loop, const Measurement& now, LoopState& state) const {
+  state.error = errorOf(loop, now, state.aim);
   const bool curve = !loop.terms.static_input.empty();
   double proportional = (curve ? 0.0 : loop.bias) + loop.kp * state.error;
   if (state.terms) proportional += state.terms->sum(now, loop.reverse ? -1.0 : 1.0);
@@ -192,11 +161,11 @@ void PiController::step(const Measurement& now, const SetpointSource& setpoint,
   }
   if (retuned_)
     for (std::size_t i = 0; i < states_.size(); ++i)
-      takeSettings(params_.loops[i], now, setpoint, states_[i]);
+      takeSettings(params_.loops[i], now, states_[i]);
   retuned_ = false;
   running_ = true;
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    propose(params_.loops[i], now, setpoint, states_[i]);
+    propose(params_.loops[i], now, states_[i]);
     if (std::isfinite(states_[i].unclipped))
       output.input[params_.loops[i].input] = states_[i].unclipped;
     else

@@ -86,15 +86,10 @@ class PiController final : public Controller {
     double aim{};                       // what the error is taken from
     std::optional<PiTermState> terms;   // only where one is on
   };
-  void takeSettings(PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
-                    LoopState& state) const;
-  double errorOf(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
-                 double aim) const;
+  void takeSettings(PiLoop& loop, const Measurement& now, LoopState& state) const;
+  double errorOf(const PiLoop& loop, const Measurement& now, double aim) const;
   Vector gains(double PiLoop::*gain, double LoopState::*next) const;
-  void propose(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
-               LoopState& state) const;
-  double scheduleSignal(const PiLoop& loop, const Measurement& now,
-                        const SetpointSource& setpoint) const;
+  void propose(const PiLoop& loop, const Measurement& now, LoopState& state) const;
   void refer(const SetpointSource& setpoint, std::uint32_t step, Vector& reference);
   void integrate(const PiLoop& loop, const Measurement& now, double sent, LoopState& state) const;
 

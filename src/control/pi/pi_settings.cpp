@@ -45,9 +45,8 @@ bool PiController::retune(const Settings& settings) {
 }
 
 /// u(k) stays what the old gains make of it: bias + kp' e + I' = bias + kp e + I.
-void PiController::takeSettings(PiLoop& loop, const Measurement& now,
-                                const SetpointSource& setpoint, LoopState& state) const {
-  const double change = (loop.kp - state.next_kp) * errorOf(loop, now, setpoint, state.aim);
+void PiController::takeSettings(PiLoop& loop, const Measurement& now, LoopState& state) const {
+  const double change = (loop.kp - state.next_kp) * errorOf(loop, now, state.aim);
   if (running_ && std::isfinite(change)) state.integral += change;
   loop.kp = state.next_kp;
   loop.ki_per_h = state.next_ki_per_h;

@@ -48,9 +48,7 @@ void PiTerms::validate(const std::string& key, Eigen::Index n_d) const {
             "a measured disturbance");
     require(std::isfinite(f.gain), where + "gain", "a finite number");
     require(std::isfinite(f.nominal), where + "nominal", "a finite number");
-    requireNotNegative(f.lead_h, where + "lead_h");
     requireNotNegative(f.lag_h, where + "lag_h");
-    require(f.lead_h == 0.0 || f.lag_h > 0.0, where + "lag_h", "a lag > 0 beside a lead");
   }
 }
 
@@ -99,9 +97,7 @@ double PiTermState::feedforward(const Measurement& now) {
     double& slow = lagged_[static_cast<Eigen::Index>(i)];
     if (fresh_) slow = d;
     slow += (f.lag_h > 0.0 ? -std::expm1(-sample_time_h_ / f.lag_h) : 1.0) * (d - slow);
-    // (1 + lead s) / (1 + lag s) = lead/lag + (1 - lead/lag) / (1 + lag s)
-    const double direct = f.lag_h > 0.0 ? f.lead_h / f.lag_h : 0.0;
-    sum += f.gain * (direct * d + (1.0 - direct) * slow);
+    sum += f.gain * slow;
   }
   return sum;
 }

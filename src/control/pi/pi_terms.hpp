@@ -10,12 +10,12 @@
 
 namespace fpc {
 
-/// u += gain (1 + lead s) / (1 + lag s) (d - nominal), of a measured disturbance.
+/// u += gain / (1 + lag s) (d - nominal), of a measured disturbance.
 struct PiFeedforward {
   int disturbance{};  ///< index into the measured ones
   double gain{};      ///< input per unit of the disturbance
   double nominal{};   ///< where it adds nothing
-  double lead_h{}, lag_h{};
+  double lag_h{};
 };
 
 /// A point of a curve, linear between points, held outside.
@@ -26,13 +26,6 @@ struct CurvePoint {
 /// 0 for an empty curve.
 double valueOf(const std::vector<CurvePoint>& curve, double at);
 
-/// Which signal the gains are scheduled by.
-struct PiScheduleSignal {
-  enum class Kind { kFollowedOutput, kOutput, kSetpoint, kDisturbance, kInput };
-  Kind kind{Kind::kFollowedOutput};
-  int index{};
-};
-
 struct PiTerms {
   double kd_h{};              ///< input per output, times h; acts on -dy/dt, not scheduled
   double derivative_lag_h{};  ///< of the filter on the derivative; 0: a difference over one sample
@@ -41,8 +34,7 @@ struct PiTerms {
   double setpoint_lead_h{};   ///< e takes r + lead dr/dt
   std::vector<CurvePoint> static_input;  ///< steady input of r, in the place of the bias
   std::vector<PiFeedforward> feedforward;
-  PiScheduleSignal schedule;
-  bool any() const;  ///< whether a term is on (the schedule's signal is none)
+  bool any() const;  ///< whether a term is on
   /// @throws InputError naming `key`....
   void validate(const std::string& key, Eigen::Index n_d) const;
 };

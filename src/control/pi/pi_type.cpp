@@ -60,16 +60,11 @@ SignalUse usedByPi(const PiParams& params, const ControllerContext& loop) {
   SignalUse use = noSignal(loop);
   const std::size_t n_y = loop.plant.outputs.size();
   const auto need_at = [&](std::size_t index) { use.needed[index] = true; };
-  using Kind = PiScheduleSignal::Kind;
   std::vector<int> moved;
   for (const PiLoop& control : params.loops) {
-    const PiScheduleSignal& schedule = control.terms.schedule;
-    const auto index = static_cast<std::size_t>(schedule.index);
     need_at(static_cast<std::size_t>(control.output));
     use.followed.push_back(control.output);
     moved.push_back(control.input);
-    if (schedule.kind == Kind::kOutput) need_at(index);
-    if (schedule.kind == Kind::kDisturbance) need_at(n_y + index);
     for (const PiFeedforward& term : control.terms.feedforward)
       need_at(n_y + static_cast<std::size_t>(term.disturbance));
   }

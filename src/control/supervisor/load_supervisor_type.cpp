@@ -20,7 +20,6 @@ LoadSupervisorParams readSupervisor(YamlSection& section, const ControllerContex
   params.flow = indexByName(load, "flow", loop.disturbances());
   params.nominal_load =
       loop.disturbance_nominal[params.concentration] * loop.disturbance_nominal[params.flow];
-  load.number("nominal", params.nominal_load, kFinitePositive);
   load.number("gain", params.load_gain, kFinite);
   load.finish();
   checked(section, [&] { params.validate(); });

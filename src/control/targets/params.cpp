@@ -34,7 +34,6 @@ void readOutput(YamlSection& section, const SignalInfo& about, TargetOutput& out
   output.unit = defaultUnit(output, about);
   section.number("unit", output.unit, kFinitePositive);
   section.number("price", output.price, kFinite);
-  section.boolean("integrating", output.integrating);
   section.finish();
 }
 
@@ -43,9 +42,6 @@ void readInput(YamlSection& section, TargetInput& input) {
   section.number("lower", input.lower, {lower, upper});
   section.number("upper", input.upper, {input.lower, upper});
   section.number("rest", input.rest, {input.lower, input.upper});
-  section.integer("rank", input.rank, 1, kMostRanks);
-  if (section.has("rank") && !section.has("rest"))
-    section.fail("rest", "the value that has this rank");
   section.number("price", input.price, kFinite);
   section.finish();
 }
@@ -75,7 +71,6 @@ int TargetParams::lastRank() const {
   for (const TargetOutput& output : outputs) {
     if (output.hasZone() || output.setpoint) last = std::max(last, output.rank);
   }
-  for (const TargetInput& input : inputs) last = std::max(last, input.rank);
   return last;
 }
 

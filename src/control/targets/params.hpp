@@ -18,16 +18,14 @@ struct TargetOutput {
   double lower{-kInfinity}, upper{kInfinity};  ///< zone
   int rank{1};                                 ///< of the zone; 1 is kept first
   bool setpoint{false};                        ///< the one of section `setpoint` is asked for
-  double unit{1.0};         ///< > 0: how much given up counts as much as one unit of another
-  double price{0.0};        ///< of one unit; negative: it earns
-  bool integrating{false};  ///< held in balance at the level where it is
+  double unit{1.0};   ///< > 0: how much given up counts as much as one unit of another
+  double price{0.0};  ///< of one unit; negative: it earns
   bool hasZone() const { return lower > -kInfinity || upper < kInfinity; }
 };
 
 struct TargetInput {
   double lower{}, upper{};  ///< never given up, inside the actuator's
   double rest{};            ///< where it ideally stands; NaN: where its last target was
-  int rank{0};              ///< of `rest`; 0: it comes after the prices
   double price{0.0};
 };
 

@@ -30,8 +30,8 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 struct TargetLayer::Workspace {
   /// One row of the problem: what it asks of which unknown or output.
   struct Ask {
-    enum Kind { kBalance, kZone, kSetpoint, kRest } kind;
-    Index index;                    // of the level, the output or the input
+    enum Kind { kBalance, kZone, kSetpoint } kind;
+    Index index;                    // of the level or the output
     std::string above, below, who;  // texts of what is given up
   };
 
@@ -75,8 +75,7 @@ struct TargetLayer::Workspace {
   }
 
   void ask(Ask::Kind kind, Index index, int rank, std::vector<int>& ranks) {
-    const bool of_input = kind == Ask::kRest;
-    const SignalInfo& about = of_input ? plant.inputs[at(index)] : plant.outputs[at(index)];
+    const SignalInfo& about = plant.outputs[at(index)];
     const std::string of_rank = rank > 0 ? " of rank " + std::to_string(rank) : "";
     Ask made{kind, index, {}, {}, about.name};
     const auto value = [&](double v) { return " " + exactText(v) + " " + about.unit + of_rank; };
@@ -86,21 +85,16 @@ struct TargetLayer::Workspace {
     } else if (kind == Ask::kSetpoint) {
       made.above = about.name + " rests above its setpoint" + of_rank;
       made.below = about.name + " rests below its setpoint" + of_rank;
-    } else if (kind == Ask::kBalance) {
+    } else {
       made.above = about.name + " rises: nothing allowed balances it";
       made.below = about.name + " falls: nothing allowed balances it";
-    } else {
-      made.above = about.name + " rests above" + value(params.inputs[at(index)].rest);
-      made.below = about.name + " rests below" + value(params.inputs[at(index)].rest);
     }
     asks.push_back(std::move(made));
     ranks.push_back(rank);
   }
 
   void setModel(const TsModel& given) {
-    std::vector<bool> integrating;
-    for (const TargetOutput& output : params.outputs) integrating.push_back(output.integrating);
-    SteadyModel steady(given, integrating);
+    SteadyModel steady(given);
     const LocalModel local(given);
     ModelObserver watching(local, params.observer, 0);
     model.emplace(std::move(steady));
@@ -121,8 +115,6 @@ struct TargetLayer::Workspace {
       if (output.hasZone()) ask(Ask::kZone, i, output.rank, ranks);
       if (output.setpoint) ask(Ask::kSetpoint, i, output.rank, ranks);
     }
-    for (Index j = 0; j < n_u; ++j)
-      if (params.inputs[at(j)].rank > 0) ask(Ask::kRest, j, params.inputs[at(j)].rank, ranks);
     const Index n = n_u + countOf(levels);
     problem = TargetProblem(n, countOf(asks));
     problem.rank = ranks;
@@ -161,14 +153,6 @@ struct TargetLayer::Workspace {
     const Vector& offset = model->offset();
     for (Index i = 0; i < countOf(asks); ++i) {
       const Ask& a = asks[at(i)];
-      if (a.kind == Ask::kRest) {
-        const TargetInput& input = params.inputs[at(a.index)];
-        problem.rows.row(i).setZero();
-        problem.rows(i, a.index) = 1.0;
-        problem.row_lower[i] = problem.row_upper[i] = input.rest;
-        problem.row_unit[i] = problem.unit[a.index];
-        continue;
-      }
       const TargetOutput& output = params.outputs[at(a.index)];
       problem.row_unit[i] = output.unit;
       if (a.kind == Ask::kBalance) {  // the balances come first, in the order of the levels
@@ -188,7 +172,7 @@ struct TargetLayer::Workspace {
         problem.price += params.outputs[at(i)].price * gain.row(i).transpose();
     for (Index j = 0; j < n_u; ++j) {
       const double rest = params.inputs[at(j)].rest;
-      problem.rest[j] = std::isnan(rest) || params.inputs[at(j)].rank > 0 ? best_u[j] : rest;
+      problem.rest[j] = std::isnan(rest) ? best_u[j] : rest;
     }
     for (Index i = 0; i < countOf(model->levels()); ++i)
       problem.rest[n_u + i] = known ? best_y[model->levels()[at(i)]] : held[model->levels()[at(i)]];

@@ -46,11 +46,10 @@ TEST(ClpAllocation, NoneWithBoundsAndMoves) { countSteps(steps(42), true); }
 
 TEST(ClpAllocation, NoneOnALongHorizon) { countSteps(steps(200), false); }
 
-TEST(ClpAllocation, NoneWithSoftOutputsMode2AndTracking) {
+TEST(ClpAllocation, NoneWithSoftOutputsAndTracking) {
   ClpParams params = steps(42);
   params.output_upper = (Vector(2) << kInfinity, 1990.0).finished();
   params.output_lower = (Vector(2) << 20.0, 1500.0).finished();
-  params.mode2_steps = 10;
   params.weight_tracking = (Vector(2) << 0.0, 0.1).finished();
   countSteps(params, true);
 }

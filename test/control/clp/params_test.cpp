@@ -27,7 +27,6 @@ TEST(ClpParams, EachBadFieldIsNamed) {
   const double nan = std::nan("");
   const std::vector<BadField> fields = {
       {"perturbation_steps", [](ClpParams& p) { p.perturbation_steps = 0; }},
-      {"mode2_steps", [](ClpParams& p) { p.mode2_steps = -1; }},
       {"weight_perturbation", [](ClpParams& p) { p.weight_perturbation = numbers({1.0}); }},
       {"weight_perturbation",
        [](ClpParams& p) {

@@ -167,12 +167,11 @@ TEST(ClosedLoopParadigmProperty, LimitsHoldInClosedLoopWithAWrongModel) {
   }
 }
 
-TEST(ClosedLoopParadigmProperty, LimitsHoldWithSoftOutputsAndMode2) {
+TEST(ClosedLoopParadigmProperty, LimitsHoldWithSoftOutputs) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(seed);
     ClpParams params;
     params.perturbation_steps = 10;
-    params.mode2_steps = 5;
     params.output_upper = Vector::Constant(2, 3.0);
     params.output_lower = Vector::Constant(2, -5.0);
     runClosedLoop(seed, 2, params);

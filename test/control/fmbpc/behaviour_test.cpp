@@ -223,30 +223,6 @@ TEST(FmbpcLaw, NoRuleFiringIsAnEventNotAFailure) {
             });
 }
 
-TEST(FmbpcLaw, AntecedentsMayComeFromTheMeasurement) {
-  TsModel model = test::firstOrder(0.85, 0.12, 0.0);
-  model.submodels[0].antecedents = {{SignalKind::kOutput, 0, 0}};
-  model.submodels[0].rules.push_back(model.submodels[0].rules[0]);
-  model.submodels[0].rules[0].antecedents = {{MembershipShape::kTriangular, {-1e3, 0.0, 0.5}}};
-  model.submodels[0].rules[1].antecedents = {{MembershipShape::kTriangular, {0.5, 1e3, 1e4}}};
-  model.submodels[0].rules[1].coefficients[0] = 0.7;
-  for (const FmbpcAntecedent source : {FmbpcAntecedent::kModel, FmbpcAntecedent::kMeasured}) {
-    FmbpcParams params = test::generalParams(1, 1, 3, 0.5, 0.0);
-    params.antecedent = source;
-    const PlantInfo info = test::infoOf(model);
-    FmbpcLaw law(params, test::wideLimits(1), info);
-    law.setModel(model);
-    test::ModelPlant plant(test::firstOrder(0.9, 0.0, 0.0), one(0.0), one(0.0), Vector());
-    SetpointSource setpoint = test::setpointOf(info, one(0.0));
-    test::start(law, plant, setpoint, 1);
-    plant.output_bias = one(2.0);  // the sensor jumps, the model stays
-    const double expected = source == FmbpcAntecedent::kModel ? 0.85 : 0.7;
-    test::run(law, plant, setpoint, 1, 2, [&](const Measurement&, const ControllerOutput& output) {
-      EXPECT_EQ(output.prediction.A(0, 0), expected) << wordOf(source);
-    });
-  }
-}
-
 TEST(FmbpcLaw, SignalsShowTheModelAndItsCorrection) {
   Running loop;
   const auto& signals = loop.law.signals();

@@ -203,7 +203,6 @@ TEST(FmbpcLiteral, StatesAsPrintedAnswerOneSampleLaterSoAHorizonOfOneHasNoEffect
   for (const int horizon : {1, 2}) {
     FmbpcParams params = reactorParams(5);
     params.realisation = FmbpcRealisation::kLiteral;
-    params.antecedent = FmbpcAntecedent::kMeasured;
     params.coincidence_steps = horizon;
     test::ModelPlant plant(model, one(0.1), one(103.0), Vector(0));
     SetpointSource setpoint = test::setpointOf(info, one(0.13));
@@ -254,11 +253,6 @@ TEST(FmbpcDelay, WhatDoesNotFitIsRefusedByName) {
             std::string::npos);
   EXPECT_NE(with([](auto& p) {
               p.realisation = FmbpcRealisation::kLiteral;
-            }).find("controller.antecedent"),
-            std::string::npos);
-  EXPECT_NE(with([](auto& p) {
-              p.realisation = FmbpcRealisation::kLiteral;
-              p.antecedent = FmbpcAntecedent::kMeasured;
               p.delay_steps = 4;
             }).find("controller.realisation"),
             std::string::npos);

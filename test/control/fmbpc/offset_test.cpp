@@ -89,15 +89,5 @@ TEST(OffsetFree, TwoInputsBringTwoOutputsToTheirSetpointsThroughLagsAndDelays) {
     }
 }
 
-TEST(OffsetFree, WithoutDisturbanceFeedforwardTheNominalValueIsUsed) {
-  FmbpcParams params = test::generalParams(2, 2, 12, 0.8, 0.05);
-  params.disturbance_feedforward = false;
-  params.disturbance_nominal = one(-5.0);
-  const Vector target = test::pair(1.0, -0.5);
-  EXPECT_LT(finalError(params, crossed(1.0, 0.0), crossed(1.2, 0.1), target), 1e-8);
-  params.disturbance_nominal.resize(0);
-  EXPECT_THROW(FmbpcLaw(params, test::wideLimits(2), test::infoOf(crossed(1.0, 0.0))), InputError);
-}
-
 }  // namespace control_fmbpc_offset_test
 }  // namespace fpc

@@ -206,7 +206,6 @@ TEST(FuzzyOptimalParams, EachFieldIsCheckedByName) {
          p.tuning.rules[0].move[0] = std::nan("");
        })},
       {"input_target", refusal([](P& p) { p.tuning.input_target.resize(3); })},
-      {"disturbance_gain", refusal([](P& p) { p.disturbance_gain = 0.0; })},
       {"reference_pole", refusal([](P& p) { p.reference_pole[0] = 1.0; })},
       {"prediction_steps", refusal([](P& p) { p.prediction_steps = 0; })}};
   for (const auto& [field, words] : refusals)

@@ -61,15 +61,6 @@ TEST(FuzzyOptimalOffset, NoneUnderInputOutputAndParameterMismatchForAnyHorizon) 
       }
 }
 
-TEST(FuzzyOptimalOffset, ASlowEstimateReachesTheSetpointToo) {
-  std::mt19937_64 generator(3);
-  const TsModel truth = test::dominantModel(generator, 2);
-  const TsModel model = test::mistaken(truth, generator, 0.15);
-  FuzzyOptimalParams params = test::optimalParams(2, 2, 6, 2, 0.1);
-  params.disturbance_gain = 0.2;
-  EXPECT_LT(finalError(params, model, truth, test::pair(0.5, -0.4), 0.3, 0.2), 1e-8);
-}
-
 TEST(FuzzyOptimalOffset, OutsideTheRecursionOneStepIsFreeOfItAndLongerHorizonsAreNot) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     std::mt19937_64 generator(seed);

@@ -38,7 +38,6 @@ inline HybridMpcParams batchReactorParams(int equation, BranchBound bound, int b
   params.choices = batchReactorInputs();
   params.horizon_blocks = blocks;
   params.bound = bound;
-  params.weight_consumption = Vector::Zero(3);
   params.weight_tracking = Eigen::Vector2d(1.0, 0.0);
   if (equation == 44) return params;
   params.weight_tracking[0] = 1.0 / params.hold_samples;

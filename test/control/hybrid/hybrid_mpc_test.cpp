@@ -49,7 +49,6 @@ TEST(HybridMpc, TheCostOfABlockIsThatOfEquation45) {
   HybridMpcParams params = test::batchReactorParams(45, BranchBound::kCost, 1);
   params.hold_samples = 1;
   params.weight_tracking[0] = 2.0;
-  params.weight_consumption[0] = 0.5;
   const auto mpc = test::batchReactorMpc(params);
   const Eigen::Vector2d at(39.0, 41.0);
   mpc->decide(at, Eigen::Vector3d(0.1, 0.0, 1.0), Vector(0), Eigen::Vector2d(40.0, 0.0));
@@ -59,7 +58,7 @@ TEST(HybridMpc, TheCostOfABlockIsThatOfEquation45) {
     const double cost = mpc->problem().advance(0, -1, choice, state);
     const double error = 0.0033 * 41.0 + 0.9967 * 39.0 - 40.0;
     const double expected =
-        2.0 * error * error + 0.5 * u[0] + 15.0 * u[1] * 1.0 + 0.03 * std::abs(u[0] - 0.1) * 1.0;
+        2.0 * error * error + 15.0 * u[1] * 1.0 + 0.03 * std::abs(u[0] - 0.1) * 1.0;
     EXPECT_NEAR(cost, expected, 1e-12) << "choice " << choice;
   }
 }
@@ -98,7 +97,6 @@ TEST(HybridMpc, ABandBetweenTwoPointsOfAGridIsNotMissedByTheBound) {
     params.hold_samples = 1;
     params.horizon_blocks = 4;
     params.weight_tracking = Vector::Ones(1);
-    params.weight_consumption = Vector::Zero(1);
     params.bound = bound;
     HybridMpc mpc(params, limits, info);
     mpc.setModel(bandModel());
@@ -215,10 +213,6 @@ TEST(HybridMpc, EachParameterIsChecked) {
   EXPECT_NO_THROW(test::batchReactorParams(45, BranchBound::kReach).validate(2, 3));
   refused([](HybridMpcParams& p) { p.choices.col(1) = p.choices.col(0); });
   refused([](HybridMpcParams& p) { p.choices = Matrix(3, 0); });
-  refused([](HybridMpcParams& p) {
-    p.choices(0, 2) = -0.1;
-    p.weight_consumption[0] = 1.0;
-  });
   refused([](HybridMpcParams& p) { p.choices(2, 2) = -1.0; });
   refused([](HybridMpcParams& p) { p.hold_samples = 0; });
   refused([](HybridMpcParams& p) { p.horizon_blocks = 0; });
