@@ -23,6 +23,12 @@ struct ModbusTag {
   RegisterFormat format;
 };
 
+/// A coil, a discrete input or a whole register that says one thing.
+struct ModbusBit {
+  int address{-1};  ///< -1: none
+  bool discrete_table{false};
+};
+
 /// One signal of the plant, or the same of an input with what is read back of it.
 struct GatewayTag {
   std::string topic, readback_topic;  ///< Float64; empty: none
@@ -37,8 +43,8 @@ struct ModbusParams {
   double poll_s{0.2};       ///< all registers are read so often
   double timeout_s{0.5};    ///< of one answer
   double reconnect_s{1.0};  ///< between two attempts
-  int automatic{-1};        ///< coil, written: 1 while the loop has the inputs
-  int remote{-1};           ///< coil, read: 1 while the plant takes commands
+  ModbusBit automatic;      ///< coil, written: 1 while the loop has the inputs
+  ModbusBit remote;         ///< coil or discrete input, read: 1 while the plant takes commands
   int owner{-1};            ///< holding register: the word of the master that leads, 0: nobody
   int heartbeat_in{-1};     ///< holding register that the plant counts up
   int heartbeat_out{-1};    ///< holding register that the gateway counts up

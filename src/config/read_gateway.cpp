@@ -13,8 +13,7 @@ namespace fpc {
 namespace {
 
 constexpr int kLastRegister = 65535;
-constexpr double kTimeoutPolls = 10.0, kReconnectPolls = 5.0;
-constexpr double kLongestTimeout = 0.5;  // [s]
+constexpr double kReconnectPolls = 5.0;
 
 /// Of a number that is read: holding registers, or input registers.
 void readTable(YamlSection& section, ModbusTag& tag) {
@@ -79,6 +78,11 @@ std::vector<GatewayTag> readTags(YamlSection& tags, const std::vector<std::strin
   return list;
 }
 
+/// A coil or discrete input.
+void readBit(YamlSection& section, const std::string& key, ModbusBit& bit) {
+  section.integer(key, bit.address, 0, kLastRegister);
+}
+
 void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   YamlSection section = gateway.section("modbus");
   section.text("host", modbus.host);
@@ -87,20 +91,22 @@ void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   section.integer("port", modbus.port, 1, 65535);
   section.integer("unit", modbus.unit, 0, 255);
   section.number("poll_s", modbus.poll_s, {1e-3, 3600.0});
-  modbus.timeout_s = std::min(kTimeoutPolls * modbus.poll_s, kLongestTimeout);
+  section.number("timeout_s", modbus.timeout_s, {1e-3, 3600.0});
   modbus.reconnect_s = kReconnectPolls * modbus.poll_s;
   readOption(section, "word_order", order);
-  section.integer("automatic_coil", modbus.automatic, 0, kLastRegister);
-  section.integer("remote_coil", modbus.remote, 0, kLastRegister);
+  readBit(section, "automatic_coil", modbus.automatic);
+  readBit(section, "remote_coil", modbus.remote);
+  readOption(section, "remote_table", modbus.remote.discrete_table,
+             {{"coil", false}, {"discrete", true}});
   section.integer("owner_register", modbus.owner, 0, kLastRegister);
   section.integer("heartbeat_in", modbus.heartbeat_in, 0, kLastRegister);
   section.integer("heartbeat_out", modbus.heartbeat_out, 0, kLastRegister);
   section.finish();
 }
 
-/// What stands at some addresses of one of the plant's tables.
+/// What stands at some addresses of one of the plant's four tables.
 struct Place {
-  enum Table { kHolding, kInput, kCoil } table;
+  enum Table { kHolding, kInput, kCoil, kDiscrete } table;
   int first, count;
   std::string key;  // of section gateway
 };
@@ -127,8 +133,9 @@ std::vector<Place> placesOf(const GatewayParams& gateway, const PlantInfo& plant
   addTags(gateway.outputs, namesOf(plant.outputs), places);
   addTags(gateway.disturbances, namesOf(plant.disturbances), places);
   addTags(gateway.inputs, namesOf(plant.inputs), places);
-  for (const Place& bit : {Place{Place::kCoil, modbus.automatic, 1, "automatic_coil"},
-                           Place{Place::kCoil, modbus.remote, 1, "remote_coil"},
+  const Place::Table remote = modbus.remote.discrete_table ? Place::kDiscrete : Place::kCoil;
+  for (const Place& bit : {Place{Place::kCoil, modbus.automatic.address, 1, "automatic_coil"},
+                           Place{remote, modbus.remote.address, 1, "remote_coil"},
                            Place{Place::kHolding, modbus.owner, 1, "owner_register"},
                            Place{Place::kHolding, modbus.heartbeat_in, 1, "heartbeat_in"},
                            Place{Place::kHolding, modbus.heartbeat_out, 1, "heartbeat_out"}})

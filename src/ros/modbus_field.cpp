@@ -146,7 +146,7 @@ void ModbusField::round(ModbusLink& link, const Wish& wish) {
   seen_.problem = seen_.exceptions > refused ? link.refusal() : lease_.problem(now_s);
   if (seen_.problem.empty() && now_s - switched_off_s_ <= kShown)
     seen_.problem =
-        "somebody has switched coil " + std::to_string(params_.modbus.automatic) + " off";
+        "somebody has switched coil " + std::to_string(params_.modbus.automatic.address) + " off";
 }
 
 void ModbusField::readAll(ModbusLink& link) {
@@ -160,8 +160,8 @@ void ModbusField::readAll(ModbusLink& link) {
     else
       ++seen_.exceptions;
   }
-  if (modbus.remote >= 0) {
-    const auto remote = link.readCoil(modbus.remote);
+  if (modbus.remote.address >= 0) {
+    const auto remote = link.readBit(modbus.remote);
     if (remote) seen_.remote = *remote;
     seen_.remote_seen = seen_.remote_seen || remote.has_value();
     if (!remote) ++seen_.exceptions;
@@ -202,10 +202,10 @@ bool ModbusField::leads(ModbusLink& link, bool claims) {
 }
 
 void ModbusField::renewAutomatic(ModbusLink& link, bool claims) {
-  const int coil = params_.modbus.automatic;
-  if (coil < 0 || (!claims && automatic_told_ == 0)) return;
-  const auto found = link.readCoil(coil);
-  const bool done = found && link.writeCoil(coil, claims);
+  const ModbusBit& coil = params_.modbus.automatic;
+  if (coil.address < 0 || (!claims && automatic_told_ == 0)) return;
+  const auto found = link.readBit(coil);
+  const bool done = found && link.writeCoil(coil.address, claims);
   if (!done) ++seen_.exceptions;
   if (automatic_told_ == 1 && found && !*found) {
     ++switched_off_;
@@ -224,7 +224,8 @@ void ModbusField::renew(ModbusLink& link, bool claims) {
 
 bool ModbusField::hasInputs() const {
   const ModbusParams& modbus = params_.modbus;
-  return (modbus.owner < 0 || lease_.leads()) && (modbus.automatic < 0 || automatic_told_ == 1);
+  return (modbus.owner < 0 || lease_.leads()) &&
+         (modbus.automatic.address < 0 || automatic_told_ == 1);
 }
 
 /// The command goes first: the plant is to have it before its sample ends.

@@ -64,9 +64,10 @@ std::optional<std::uint16_t> ModbusLink::readRegister(int address) {
   return value;
 }
 
-std::optional<bool> ModbusLink::readCoil(int address) {
+std::optional<bool> ModbusLink::readBit(const ModbusBit& bit) {
   std::uint8_t value = 0;
-  if (!answered(modbus_read_bits(of(context_), address, 1, &value))) return {};
+  const auto read = bit.discrete_table ? modbus_read_input_bits : modbus_read_bits;
+  if (!answered(read(of(context_), bit.address, 1, &value))) return {};
   return value != 0;
 }
 

@@ -27,7 +27,7 @@ class ModbusLink {
   void connect();
   std::optional<double> read(const ModbusTag& tag);
   std::optional<std::uint16_t> readRegister(int address);
-  std::optional<bool> readCoil(int address);
+  std::optional<bool> readBit(const ModbusBit& bit);
   /// False: refused, and so not written.
   bool write(const ModbusTag& tag, double value);
   bool writeRegister(int address, std::uint16_t value);

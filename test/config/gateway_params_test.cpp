@@ -26,7 +26,8 @@ TEST(GatewayParams, ReadsTheTagMapOfTopics) {
 TEST(GatewayParams, ReadsTheTagMapOfRegisters) {
   const GatewayParams gateway =
       gatewayLoop(
-          "  type: modbus\n  modbus: {word_order: low_first, remote_coil: 3}\n"
+          "  type: modbus\n  modbus: {word_order: low_first, remote_coil: 3, remote_table: "
+          "discrete}\n"
           "  tags:\n    level: {register: 7, table: input}\n"
           "    rain: {register: 2, type: int32}\n"
           "    inflow: {register: 4, type: uint16, scale: 0.01, offset: -1, readback: 6, table: "
@@ -39,7 +40,7 @@ TEST(GatewayParams, ReadsTheTagMapOfRegisters) {
   EXPECT_EQ(gateway.inputs[0].readback.format.scale, 0.01);
   EXPECT_TRUE(gateway.inputs[0].readback.input_table);
   EXPECT_FALSE(gateway.inputs[0].modbus.input_table);
-  EXPECT_EQ(gateway.modbus.timeout_s, 0.5);
+  EXPECT_TRUE(gateway.modbus.remote.discrete_table);
   EXPECT_EQ(gateway.modbus.reconnect_s, 1.0);
   EXPECT_TRUE(gateway.reads_back);  // what a holding register holds can be read
   EXPECT_EQ(gateway.heartbeat_s, 0.0);
@@ -87,6 +88,7 @@ TEST(GatewayParams, NoAddressOfTheMapMeansTwoThings) {
                   "remote_coil: 1",
                   "register: 4, readback: 6"),
             kNone);
+  EXPECT_EQ(error("automatic_coil: 1, remote_coil: 1, remote_table: discrete", apart), kNone);
   // A float at 0 also has register 1.
   expectWords(error("", "register: 1"),
               {"gateway.tags.inflow.register", "an address of its own", "tags.level.register"});
