@@ -85,7 +85,7 @@ TEST(Bsm1Faults, AnAmmoniumAnalyserThatSticksUnderItsNoise) {
 TEST(Bsm1Faults, AnAnalyserThatSticksUnderItsNoiseBeforeThePeak) {
   if (!hasRecords()) GTEST_SKIP() << "needs ${FMBPC_DATA}";
   Overrides fault = stuck("S_NH5");
-  fault[1].second = "222";  // the first morning of the judged week
+  fault[1].second = std::string("[222, ") + kTo + "]";  // the first morning of the judged week
   fault.emplace_back("noise.std.S_NH5", "0.05");
   const Outcome is = run("bsm1_default", fault), ours = run("bsm1_fmbpc", fault);
   EXPECT_LE(ours.effluent.EQI, is.effluent.EQI);

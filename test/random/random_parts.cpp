@@ -127,9 +127,13 @@ std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
   double time = 0.0;
   const int steps = dice.whole(0, 3);
   for (int i = 0; i < steps; ++i) {
-    time += dice.between(0.0, 0.4) * frame.samples;
+    time = std::round(time + std::max(i > 0 ? 1.0 : 0.0, dice.between(0.0, 0.4) * frame.samples));
+    const int ramp = dice.chance(0.15) ? dice.whole(1, 8) : 0;
     std::string entry = byName(names, values());
-    entry.replace(0, 1, "{time_h: " + exactText(frame.hours(std::round(time))) + ", ");
+    entry.replace(0, 1,
+                  "{time_h: " + exactText(frame.hours(time)) +
+                      ", ramp_h: " + exactText(frame.hours(ramp)) + ", ");
+    time += ramp;
     text += (i == 0 ? "  schedule:\n    - " : "    - ") + entry + "\n";
   }
   if (dice.chance(0.2)) {

@@ -53,13 +53,13 @@ std::string doubts(Dice& dice, const Quantity& q, const RandomFrame& frame) {
 
 std::string randomSensors(Dice& dice, const RandomFrame& frame) {
   if (!dice.chance(0.25)) return "";
-  std::string text = "sensors:\n  seed: " + std::to_string(dice.whole(0, 99)) + "\n";
+  std::string text;
   if (frame.sample_time_s < 60.0 || dice.chance(0.5))
     text += "  step_s: " + exactText(frame.sample_time_s / dice.whole(1, frame.divisible ? 5 : 1)) +
             "\n";
   for (const Quantity& q : frame.outputs)
     if (dice.chance(0.6)) text += sensor(dice, q, frame);
-  return text;
+  return text.empty() ? text : "sensors:\n" + text;
 }
 
 std::string randomDrives(Dice& dice, const RandomFrame& frame) {
@@ -78,8 +78,7 @@ std::string randomPlausibility(Dice& dice, const RandomFrame& frame) {
   std::string text = "plausibility:\n  signals:\n";
   for (const Quantity& q : frame.outputs) text += doubts(dice, q, frame);
   if (!frame.model.empty() && dice.chance(0.4))
-    text += "  reaction_samples: " + std::to_string(dice.whole(8, 15)) +
-            "\n  reaction: " + dice.pick<std::string>({"say", "hold", "fallback"}) + "\n";
+    text += "  reaction_samples: " + std::to_string(dice.whole(8, 15)) + "\n";
   return text;
 }
 
