@@ -201,29 +201,6 @@ char decimalOf(const std::string& word) {
   return found->second;
 }
 
-CsvFormat formatOf(const std::string& file) {
-  CsvFormat format;
-  std::ifstream stream(file);
-  std::string line;
-  if (!std::getline(stream, line)) return format;
-  std::size_t most = 1;
-  for (const char c : {',', ';', '\t', '|'}) {
-    const std::size_t cells = cellsOf(line, c).size();
-    if (cells > most) format.separator = c;
-    most = std::max(most, cells);
-  }
-  if (format.separator == ',') return format;
-  while (std::getline(stream, line))
-    for (const std::string& cell : cellsOf(line, format.separator)) {
-      const auto sign = cell.find_first_of(".,");
-      if (sign == std::string::npos) continue;
-      format.decimal = cell[sign];
-      if (const auto value = cellNumber(cell, format); value && !std::isnan(*value)) return format;
-    }
-  format.decimal = CsvFormat().decimal;
-  return format;
-}
-
 void CsvFormat::validate() const {
   require(decimal == '.' || decimal == ',', "decimal", ". or ,");
   require(separator != decimal, "decimal", "another character than the separator");

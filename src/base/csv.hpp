@@ -22,11 +22,6 @@ struct CsvFormat {
 char separatorOf(const std::string& word);
 char decimalOf(const std::string& word);  ///< of point or comma, likewise
 
-/// Separator and decimal sign that a file seems to have: the separator that is most often in its
-/// header line, and the sign of its first number with a fraction. Those of CsvFormat where there is
-/// none, or no file.
-CsvFormat formatOf(const std::string& file);
-
 /// Columns by name; a missing cell is NaN.
 struct CsvTable {
   std::string file;

@@ -10,15 +10,12 @@ namespace fpc {
 namespace {
 
 /// Other cells are missing ones.
-void readPlausible(YamlSection& section, MissingCells missing, CsvChannel& channel) {
+void readPlausible(YamlSection& section, CsvChannel& channel) {
   std::vector<double> range;
   section.numbers("plausible", range, kFinite);
   if (!section.has("plausible")) return;
   if (range.size() != 2 || !(range[0] < range[1]))
     section.fail("plausible", "[lower, upper] with lower < upper");
-  channel.implausible = missing == MissingCells::kHold          ? Implausible::kHold
-                        : missing == MissingCells::kInterpolate ? Implausible::kInterpolate
-                                                                : Implausible::kError;
   channel.lower = range[0];
   channel.upper = range[1];
 }
@@ -41,7 +38,7 @@ void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
     channel.number("offset", value.offset, kFinite);
     channel.number("mean", value.mean, kFinite);
     if (channel.has("mean") && value.mean == 0.0) channel.fail("mean", "a number other than 0");
-    readPlausible(channel, params.missing, value);
+    readPlausible(channel, value);
     if (channel.has("mean") && (channel.has("scale") || channel.has("offset")))
       channel.fail("mean", "either mean, or scale and offset");
     channel.finish();
@@ -68,8 +65,7 @@ void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
                     const std::vector<std::string>& names) {
   section.text("file", params.file);
   section.text("time_column", params.time_column);
-  params.format = formatOf(params.file);
-  section.names("missing_values", params.format.missing_values);
+  readCsvFormat(section, params.format);
   section.oneOf("time_unit", params.time_unit, timeUnits());
   readOption(section, "missing", params.missing,
              {{"error", MissingCells::kError},

@@ -13,7 +13,6 @@ namespace fpc {
 namespace {
 
 constexpr int kLastRegister = 65535;
-constexpr double kReconnectPolls = 5.0;
 
 /// Of a number that is read: holding registers, or input registers.
 void readTable(YamlSection& section, ModbusTag& tag) {
@@ -92,7 +91,7 @@ void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   section.integer("unit", modbus.unit, 0, 255);
   section.number("poll_s", modbus.poll_s, {1e-3, 3600.0});
   section.number("timeout_s", modbus.timeout_s, {1e-3, 3600.0});
-  modbus.reconnect_s = kReconnectPolls * modbus.poll_s;
+  section.number("reconnect_s", modbus.reconnect_s, {1e-3, 3600.0});
   readOption(section, "word_order", order);
   readBit(section, "automatic_coil", modbus.automatic);
   readBit(section, "remote_coil", modbus.remote);

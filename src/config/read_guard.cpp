@@ -11,8 +11,7 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   guard.enabled = !off;
   std::vector<double> trust{guard.trust_low, guard.trust_high};
   section.numbers("trust", trust, {0.0, 1.0});
-  if (trust.size() != 2 || trust[0] > trust[1])
-    section.fail("trust", "[low, high] with low <= high");
+  if (trust.size() != 2) section.fail("trust", "[low, high]");
   guard.trust_low = trust[0];
   guard.trust_high = trust[1];
   section.integer("look_ahead", guard.look_ahead, 0);

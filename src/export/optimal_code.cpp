@@ -138,7 +138,6 @@ class OptimalCode final : public PredictiveCode {
     d_g_ = p_.states("ruleError", Kind::kReal, rules() * b_.n_y);
     base_ = p_.states("base", Kind::kReal, b_.n_y);
     B_ = p_.states("gainB", Kind::kReal, b_.n_y * b_.n_u);
-    begun_ = p_.state("estimated", Kind::kBool);
     g_ = p_.works("ruleG", Kind::kReal, n_x_);
     error_ = p_.works("modelError", Kind::kReal, b_.n_y);
     a_ = p_.work("lawA");
@@ -183,7 +182,6 @@ class OptimalCode final : public PredictiveCode {
 
   void startModel() override {
     model_.rest(x_, b_.y, b_.applied, dm_);
-    p_.set(begun_, false);
     ruleBase(dm_);
   }
 
@@ -198,16 +196,10 @@ class OptimalCode final : public PredictiveCode {
           p_.set(a_, a_ + rule_B_[r * (b_.n_y * b_.n_u) + (i * b_.n_u + j)] * b_.applied[j]);
         });
         p_.set(a_, b_.y[i] - a_);
-        p_.when(
-            begun_,
-            [&] {
-              p_.set(d_g_[r * b_.n_y + i], d_g_[r * b_.n_y + i] + (a_ - d_g_[r * b_.n_y + i]));
-            },
-            [&] { p_.set(d_g_[r * b_.n_y + i], a_); });
+        p_.set(d_g_[r * b_.n_y + i], a_);
         p_.contain(d_g_[r * b_.n_y + i]);
       });
     });
-    p_.set(begun_, true);
   }
 
   void propose() override {
@@ -289,8 +281,8 @@ class OptimalCode final : public PredictiveCode {
   int n_x_;
   std::vector<RuleGains> gains_;
   Value rule_A_{0}, rule_B_{0}, rule_offset_{0}, rule_feed_{0}, now_{0}, later_{0}, K_{0}, off_{0},
-      correction_{0}, constant_{0}, x_{0}, rule_base_{0}, d_g_{0}, base_{0}, B_{0}, begun_{0},
-      g_{0}, error_{0}, a_{0}, healthy_{0};
+      correction_{0}, constant_{0}, x_{0}, rule_base_{0}, d_g_{0}, base_{0}, B_{0}, g_{0},
+      error_{0}, a_{0}, healthy_{0};
   std::vector<Value> error_out_, weights_out_;
 };
 

@@ -26,7 +26,7 @@ struct LateRows {
 struct DisturbanceRecord {
   Matrix values;                ///< n_d (samples + 1)
   std::uint64_t repaired{};     ///< missing cells that were held or interpolated
-  std::uint64_t implausible{};  ///< cells outside `plausible` that were clipped, held, interpolated
+  std::uint64_t implausible{};  ///< cells outside `plausible` that were held or interpolated
   LateRows late{};              ///< of a CSV file; none where it is interpolated
 };
 
@@ -62,8 +62,8 @@ struct CsvChannel {
   double offset{0.0};
   double mean{};  ///< used if not 0
   double lower{-std::numeric_limits<double>::infinity()},
-      upper{std::numeric_limits<double>::infinity()};  ///< plausible cells, in the file's unit
-  Implausible implausible{Implausible::kError};        ///< what becomes of others; not kDrop
+      upper{std::numeric_limits<double>::infinity()};  ///< plausible cells, in the file's unit;
+                                                       ///< others are missing ones
 };
 
 /// Between two rows of a record.

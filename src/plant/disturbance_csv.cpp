@@ -35,7 +35,9 @@ ColumnRules rulesOf(const CsvChannel& channel, MissingCells missing) {
   rules.missing = missing;
   rules.lower = channel.lower;
   rules.upper = channel.upper;
-  rules.implausible = channel.implausible;
+  rules.implausible = missing == MissingCells::kHold          ? Implausible::kHold
+                      : missing == MissingCells::kInterpolate ? Implausible::kInterpolate
+                                                              : Implausible::kError;
   rules.missing_key = "disturbance.csv.missing";
   rules.implausible_key = "disturbance.csv.missing";
   return rules;
@@ -147,9 +149,8 @@ void validate(const CsvDisturbanceParams& params, std::uint32_t samples, double 
                 std::isfinite(channel.mean),
             channelName(channel.name), "finite scale, offset and mean");
   for (const auto& channel : params.channels)
-    require(channel.lower <= channel.upper && channel.implausible != Implausible::kDrop,
-            channelName(channel.name),
-            "plausible cells from lower to upper, others an error, clipped, held or interpolated");
+    require(channel.lower <= channel.upper, channelName(channel.name),
+            "plausible cells from lower to upper");
 }
 
 }  // namespace

@@ -32,9 +32,8 @@ bool isLaws(ActionSource source) {
 }  // namespace
 
 void GuardParams::validate(Index n_y, bool has_fallback) const {
-  require(trust_low >= 0.0 && trust_low <= 1.0, "guard.trust", "a number from 0 to 1");
-  require(trust_high >= trust_low && trust_high <= 1.0, "guard.trust",
-          "a number from trust_low to 1");
+  require(trust_low >= 0.0 && trust_high >= trust_low && trust_high <= 1.0, "guard.trust",
+          "[low, high] with 0 <= low <= high <= 1");
   require(look_ahead >= 0, "guard.look_ahead", "an integer >= 0");
   require(horizon_least >= 0, "guard.horizon_least", "an integer >= 0");
   require(return_samples >= 1, "guard.return_samples", "an integer >= 1");
@@ -92,7 +91,12 @@ bool GuardedController::expect(std::uint32_t k, Index disturbance, VectorRef ahe
 
 void GuardedController::setModel(const TsModel& model) {
   inside_->setModel(model);
-  if (fallback_) fallback_->setModel(model);
+  try {
+    if (fallback_) fallback_->setModel(model);
+  } catch (const InputError&) {
+    if (!model_.submodels.empty()) inside_->setModel(model_);
+    throw;
+  }
   model_ = matchToPlant(model, plant_);
   known_ = knowsDomain(model_);
   for (std::size_t i = 0; i < moved_.size(); ++i)
@@ -225,7 +229,6 @@ void GuardedController::askFallback(const Measurement& now, const SetpointSource
   fallback_output_.begin();
   fallback_->step(begins_ ? from_ : now, setpoint, fallback_output_);
   begins_ = false;
-  asked_ = true;
   output.input = fallback_output_.input;
   output.ok = fallback_output_.ok;
   for (const Notice& notice : fallback_output_.events) output.events.add(notice);
@@ -273,7 +276,6 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,
                              ControllerOutput& output) {
   view_ = {};
-  asked_ = false;
   const double present = trustAt(now, now.input_applied);
   const double process = known_ ? processTrustOf(model_, point_) : 1.0;
   if (fallback_) comeBack(now, process);
@@ -281,7 +283,8 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
   inside_->step(now, setpoint, output);
   lookAhead(now, output);
   view_.trust = present;
-  if (isLaws(output.source)) {
+  const bool acts = isLaws(output.source);
+  if (acts) {
     view_.trust = std::min(present, trustAt(now, output.input));
     fallBack(now, process < params_.trust_low);
     view_.outside = view_.trust < params_.trust_low;
@@ -289,7 +292,7 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
   }
   if (unstable_) output.events.add({EventCode::kOscillationGrows});
   if (process < params_.trust_low) output.events.add({EventCode::kOutsideModel});
-  if (fallback_ && !asked_) fallback_->lookOn(now);
+  if (fallback_ && !(acts && fallen_back_)) fallback_->lookOn(now);
   refreshSignals();
 }
 

@@ -137,7 +137,6 @@ class GuardedController final : public ControllerAround {
   bool fallen_back_{false};
   bool unstable_{false};  // it is so for good
   bool begins_{false};    // the fallback, at this sample
-  bool asked_{false};     // so is it
   Measurement from_;      // from there: what swings, from its middle
   int above_{};           // samples in a row above trust_high
   Vector point_, proposed_;

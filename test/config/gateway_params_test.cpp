@@ -41,7 +41,6 @@ TEST(GatewayParams, ReadsTheTagMapOfRegisters) {
   EXPECT_TRUE(gateway.inputs[0].readback.input_table);
   EXPECT_FALSE(gateway.inputs[0].modbus.input_table);
   EXPECT_TRUE(gateway.modbus.remote.discrete_table);
-  EXPECT_EQ(gateway.modbus.reconnect_s, 1.0);
   EXPECT_TRUE(gateway.reads_back);  // what a holding register holds can be read
   EXPECT_EQ(gateway.heartbeat_s, 0.0);
 }

@@ -133,27 +133,21 @@ TEST(DisturbanceCsv, OtherSeparatorsDecimalsAndMissingValues) {
   EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, -999, 3.5}));
   params.format.missing_values = {"-999", "Bad", "null", "#N/A"};
   EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, 1.5, 3.5}));
-  const CsvFormat found = formatOf(params.file);
-  EXPECT_EQ(found.separator, ';');
-  EXPECT_EQ(found.decimal, ',');
   CsvDisturbanceParams tabs = flowFrom("t\tq\n0\t1\n1\t2\n");
-  tabs.format = formatOf(tabs.file);
+  tabs.format.separator = '\t';
   EXPECT_EQ(flows(tabs, 1, 3600.0), (Values{1, 2}));
 }
 
-TEST(DisturbanceCsv, ImplausibleCellsAreErrorsClippedHeldOrInterpolatedAndCounted) {
+TEST(DisturbanceCsv, ImplausibleCellsAreMissingOnesAndCounted) {
   CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,9999\n2,300\n3,-5\n4,\n5,600\n");
-  params.missing = MissingCells::kHold;
   params.channels[0].lower = 0.0;
   params.channels[0].upper = 1000.0;
   expectWords(errorOf(params, 4), ":3: column 'q': expected a value from 0 to 1000");
   expectWords(errorOf(params, 4), "disturbance.csv.missing");
-  params.channels[0].implausible = Implausible::kClip;
-  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 1000, 300, 0, 0, 600}));
-  params.channels[0].implausible = Implausible::kHold;
+  params.missing = MissingCells::kHold;
   EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 100, 300, 300, 300, 600}));
-  params.channels[0].implausible = Implausible::kInterpolate;
-  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 200, 300, 400, 300, 600}));
+  params.missing = MissingCells::kInterpolate;
+  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 200, 300, 400, 500, 600}));
   const DisturbanceRecord record = readDisturbances(params, kNames, kNominal, 3600.0, 5);
   EXPECT_EQ(record.implausible, 2U);
   EXPECT_EQ(record.repaired, 1U);

@@ -61,6 +61,7 @@ std::string record(Dice& dice, const std::vector<Quantity>& loads, const RandomF
   for (const auto& q : loads) channels += "      " + q.name + ": {column: c_" + q.name + "}\n";
   return std::string("  csv:\n    file: record.csv\n    time_column: t\n    missing: ") +
          (dice.chance(0.5) ? "hold" : "interpolate") + "\n    missing_values: [Bad]\n" +
+         (german ? "    separator: semicolon\n    decimal: comma\n" : "") +
          "    interpolation: " + (dice.chance(0.5) ? "hold" : "linear") +
          "\n    end: " + (dice.chance(0.5) ? "hold" : "repeat") + "\n    channels:\n" + channels;
 }

@@ -36,9 +36,13 @@ struct Wish final : Controller {
     return p;
   }
   bool needsModel() const override { return true; }
-  void setModel(const TsModel&) override { ++models; }
+  void setModel(const TsModel& model) override {
+    if (refuses) throw InputError("a model that does not fit");
+    models.push_back(model.name);
+  }
   std::vector<std::uint32_t> resets, looked_on;
-  int models{};
+  std::vector<std::string> models;
+  bool refuses{false};
   std::size_t forgotten_before_reset{99};
   double wish{700.0}, seen{};
 };
@@ -152,7 +156,7 @@ TEST_F(Guard, ALawWithAModelIsAFallbackThatFollowsTheProcess) {
   Wish* fallback = owned.get();
   fallback->wish = 650.0;
   make(params(), std::move(owned));
-  EXPECT_EQ(fallback->models, 1);
+  EXPECT_EQ(fallback->models.size(), 1U);
   EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
   EXPECT_EQ(step(1, 2000.0, 700.0), 700.0);
   EXPECT_EQ(fallback->looked_on, (Steps{0, 1}));
@@ -212,6 +216,17 @@ TEST_F(Guard, WhatSwingsFurtherEachTimeIsHandedToTheFallbackForGood) {
   guard->reset(sample(150));
   step(151, 1800.0, 700.0);
   EXPECT_EQ(out.source, ActionSource::kBase);
+}
+
+TEST_F(Guard, AModelThatTheFallbackRefusesIsNoBodysModel) {
+  auto owned = std::make_unique<Wish>();
+  Wish* fallback = owned.get();
+  make(params(), std::move(owned));
+  fallback->refuses = true;
+  TsModel other = boxModel();
+  other.name = "other";
+  EXPECT_THROW(guard->setModel(other), InputError);
+  EXPECT_EQ(law->models.back(), boxModel().name);
 }
 
 TEST_F(Guard, InASwingALawWithAModelBeginsAtThePresentSample) {

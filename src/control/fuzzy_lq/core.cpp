@@ -69,7 +69,6 @@ void FuzzyOptimalCore::rest(const LawSample& sample) {
   const Measurement& now = sample.now;
   local_.restState(now.outputs, now.input_applied, sample.disturbances, state_);
   before_ = state_;
-  begun_ = false;
   warns_ = short_sighted_;
   if (observer_) observer_->rest(now.outputs, now.input_applied, sample.disturbances);
 }
@@ -122,12 +121,9 @@ void FuzzyOptimalCore::estimate(const LawSample& sample) {
     rule.model.blend(before_, sample.past_disturbances);
     predictOneStep(rule.model.affine(), sample.now.input_applied);
     for (Index i = 0; i < error_.size(); ++i) {
-      const double one_step = seen_[i] - predicted_[local_.outputState(i)];
-      double& d = rule.disturbance[i];
-      d = begun_ && !observer_ ? d + (one_step - d) : one_step;
+      rule.disturbance[i] = seen_[i] - predicted_[local_.outputState(i)];
     }
   }
-  begun_ = true;
 }
 
 bool FuzzyOptimalCore::look(const LawSample& sample) {

@@ -54,7 +54,6 @@ class FuzzyOptimalCore final : public LawCore {
   std::optional<ModelObserver> observer_;  ///< without: the measurements count as they are
   bool short_sighted_{false};              ///< some rule's horizon is too short for some input
   bool warns_{false};                      ///< of that, at a start
-  bool begun_{false};                      ///< the d_g have been estimated since rest()
   Vector state_, before_;                  ///< x(k), x(k-1): measured, or as observed
   Vector predicted_;                       ///< of one rule
   Vector seen_;           ///< y(k): measured, or what the blended model and d expect

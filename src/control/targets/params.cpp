@@ -34,6 +34,7 @@ void readOutput(YamlSection& section, const SignalInfo& about, TargetOutput& out
   output.unit = defaultUnit(output, about);
   section.number("unit", output.unit, kFinitePositive);
   section.number("price", output.price, kFinite);
+  section.boolean("integrating", output.integrating);
   section.finish();
 }
 

@@ -18,8 +18,9 @@ struct TargetOutput {
   double lower{-kInfinity}, upper{kInfinity};  ///< zone
   int rank{1};                                 ///< of the zone; 1 is kept first
   bool setpoint{false};                        ///< the one of section `setpoint` is asked for
-  double unit{1.0};   ///< > 0: how much given up counts as much as one unit of another
-  double price{0.0};  ///< of one unit; negative: it earns
+  double unit{1.0};         ///< > 0: how much given up counts as much as one unit of another
+  double price{0.0};        ///< of one unit; negative: it earns
+  bool integrating{false};  ///< held in balance at the level where it is
   bool hasZone() const { return lower > -kInfinity || upper < kInfinity; }
 };
 

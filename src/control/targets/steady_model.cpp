@@ -33,11 +33,12 @@ bool same(const T& a, const T& b) {
 
 }  // namespace
 
-SteadyModel::SteadyModel(const TsModel& model) : local_(model) {
+SteadyModel::SteadyModel(const TsModel& model, const std::vector<bool>& integrating)
+    : local_(model) {
   const Index n_y = countOf(model.outputs), n_u = countOf(model.inputs);
   for (Index i = 0; i < n_y; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const bool level = integrates(model.submodels[k], static_cast<int>(i));
+    const bool level = integrating[k] || integrates(model.submodels[k], static_cast<int>(i));
     (level ? levels_ : others_).push_back(i);
     output_lags_.push_back(std::max(model.maxLag(SignalKind::kOutput, static_cast<int>(i)) + 1, 1));
   }

@@ -16,12 +16,12 @@ namespace fpc {
 /// other unknowns.
 class SteadyModel {
  public:
-  /// `model` is matched to the plant. An output whose rules all integrate (own coefficients add up
-  /// to 1) has no level.
-  explicit SteadyModel(const TsModel& model);
+  /// `model` is matched to the plant. integrating: n_y, stated; an output whose rules all integrate
+  /// (own coefficients add up to 1) is so without that.
+  SteadyModel(const TsModel& model, const std::vector<bool>& integrating);
   const std::vector<Eigen::Index>& levels() const { return levels_; }  ///< integrating outputs
-  /// About rest at y, u under the measured d and the estimated w. Levels stay at `held`, n_y,
-  /// in their own balance.
+  /// About rest at y, u under the measured d and the estimated w. Levels that are stated to
+  /// integrate but do not quite are taken to stay at `held`, n_y, in their own balance.
   /// False if the other outputs have no rest, or nothing finite came out. No allocation.
   bool linearise(VectorRef y, VectorRef u, VectorRef d, VectorRef w, VectorRef held);
   /// n_y (n_u + n_levels): y = gain v + offset for v = (u, levels).

@@ -94,7 +94,9 @@ struct TargetLayer::Workspace {
   }
 
   void setModel(const TsModel& given) {
-    SteadyModel steady(given);
+    std::vector<bool> integrating;
+    for (const TargetOutput& output : params.outputs) integrating.push_back(output.integrating);
+    SteadyModel steady(given, integrating);
     const LocalModel local(given);
     ModelObserver watching(local, params.observer, 0);
     model.emplace(std::move(steady));
