@@ -61,7 +61,7 @@ constexpr EventKind kKinds[] = {
     {C::kTargetGivenUp, "target_given_up", kI, "limits, setpoints or resting values of section targets cannot all be kept at rest", "the lowest ranks are given up, each by the least amount", "none, or wider zones; look at the order of the ranks"},
     {C::kTargetNotFound, "target_not_found", kW, "no target can be found: a signal is missing, the model has no rest, or the solver fails", "the last good target stays", "look at the model; an output that integrates needs targets.outputs: integrating"},
     {C::kTargetUnbounded, "target_unbounded", kW, "a price of section targets drives an integrating output where no limit holds it", "the last good target stays", "give it a zone, or take the price out"},
-    {C::kTargetNotSettled, "target_not_settled", kI, "targets of a model whose gains bend had not settled after targets.iterations", "the last of them is used; the next sample goes on from there", "none, or raise targets.iterations"},
+    {C::kTargetNotSettled, "target_not_settled", kI, "targets of a model whose gains bend had not settled after five rounds", "the last of them is used; the next sample goes on from there", "none"},
     {C::kTargetsLate, "targets_late", kW, "no targets of target_optimizer have come for a sample", "the law goes on with the last ones", "start target_optimizer again"},
     {C::kInputStuck, "input_stuck", kW, "an input does not follow its command, or is not read back", "the command is held there if plausibility.stuck asks for it", "look at the actuator"},
     {C::kActuatorIneffective, "actuator_ineffective", kW, "the outputs do not react to an input as the model says", "the law goes on", "look at the actuator behind its position signal"},

@@ -10,6 +10,11 @@
 
 namespace fpc {
 
+/// The action is what a law proposed, inside the limits of the inputs.
+inline bool isLawsOwn(ActionSource source) {
+  return source == ActionSource::kBase || source == ActionSource::kClipped;
+}
+
 /// Base of guards: reset() and step() are theirs, everything else is handed on.
 class ControllerAround : public Controller {
  public:

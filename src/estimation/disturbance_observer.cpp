@@ -45,6 +45,12 @@ void ObserverParams::validate(Index n_y) const {
   }
 }
 
+bool ObserverParams::beginsMoving() const {
+  return !estimated.empty() && !atInputs() && !disturbance_std.any() &&
+         std::all_of(estimated.begin(), estimated.end(),
+                     [](const EstimatedDisturbance& d) { return d.walk_std > 0.0; });
+}
+
 DisturbanceObserver::DisturbanceObserver(ObserverParams params, Index n_x,
                                          std::vector<Index> output_rows)
     : params_((params.validate(static_cast<Index>(output_rows.size())), std::move(params))),
@@ -134,6 +140,23 @@ bool DisturbanceObserver::correct(VectorRef outputs, Eigen::Ref<Vector> state) {
   if (!correction_.allFinite()) return false;
   state += correction_.head(n_x_);
   disturbance_ += correction_.tail(n_d_);
+  applyGain();
+  return true;
+}
+
+void DisturbanceObserver::readAfterRest(const Matrix& rest, const Matrix& A) {
+  // The gain of an output of which nothing is known: all of what is read is where it rested.
+  for (Index i = 0; i < n_y_; ++i) {
+    correction_.head(n_x_) = rest.col(i);
+    correction_.head(n_x_).noalias() -= A.lazyProduct(rest.col(i));
+    K_.col(i).head(n_x_) = rest.col(i);
+    for (Index d = 0; d < n_y_; ++d)
+      K_(n_x_ + d, i) = correction_[rows_[static_cast<std::size_t>(d)]];
+  }
+  applyGain();
+}
+
+void DisturbanceObserver::applyGain() {
   IKC_.setIdentity();
   for (Index i = 0; i < n_y_; ++i) IKC_.col(rows_[static_cast<std::size_t>(i)]) -= K_.col(i);
   multiplyBothSides(IKC_, P_, PF_);
@@ -141,7 +164,6 @@ bool DisturbanceObserver::correct(VectorRef outputs, Eigen::Ref<Vector> state) {
     for (Index row = 0; row < P_.rows(); ++row)
       for (Index column = 0; column < P_.cols(); ++column)
         P_(row, column) += K_(row, i) * R_[i] * K_(column, i);
-  return true;
 }
 
 void DisturbanceObserver::addDisturbance(Eigen::Ref<Vector> state) const {

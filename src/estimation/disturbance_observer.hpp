@@ -16,7 +16,8 @@ constexpr double kUnknownChanges = 10.0;
 /// A disturbance that the model knows and nobody measures.
 struct EstimatedDisturbance {
   std::string name;
-  double std{};       ///< of its jump from 0 when a run starts, > 0
+  double std{};       ///< of its jump from 0 when a run starts, > 0; where disturbance_std is 0
+                      ///< and it walks: as far as it has walked before the start
   double walk_std{};  ///< of its change per sample
 };
 
@@ -29,6 +30,8 @@ struct ObserverParams {
   Vector input_std;  ///< n_u: d adds to the inputs instead and changes by this; empty: not
   bool noisy() const { return noise_std.any(); }
   bool atInputs() const { return input_std.size() > 0; }
+  /// Nothing but the model's disturbances changes, and they have done so before the start.
+  bool beginsMoving() const;
   /// @throws InputError naming controller.observer.KEY.
   void validate(Eigen::Index n_y) const;
 };
@@ -54,6 +57,12 @@ class DisturbanceObserver {
   void predict(const Matrix& A);
   /// With disturbances at the inputs. E: n_x n_u.
   void predict(const Matrix& A, const Matrix& E);
+  /// Nothing is uncertain: a process that rests, wherever.
+  void beCertain() { P_.setZero(); }
+  /// The process rested at outputs that nobody read, and has moved since as P says: now they are
+  /// read. rest: n_x n_y, the state at rest of an output 1; d is what A lacks to rest there.
+  void readAfterRest(const Matrix& rest, const Matrix& A);
+  double variance(Eigen::Index row) const { return P_(row, row); }
   /// This row of the state is less certain by so much.
   void loosen(Eigen::Index row, double std) { P_(row, row) += std * std; }
   /// state: x(k|k-1), d(k-1) already in it; becomes x(k|k). Not finite: nothing changes, false.
@@ -69,6 +78,7 @@ class DisturbanceObserver {
     return params_.atInputs() ? params_.input_std : params_.disturbance_std;
   }
   bool computeGain();
+  void applyGain();  // on P, Joseph's form
 
   ObserverParams params_;
   Eigen::Index n_x_, n_y_, n_d_;

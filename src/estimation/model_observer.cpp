@@ -1,6 +1,7 @@
 #include "estimation/model_observer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
@@ -11,6 +12,8 @@ namespace fpc {
 namespace {
 
 using Eigen::Index;
+
+constexpr int kLongestWalk = 1000;  // samples before a start
 
 std::vector<Index> rowsOf(const LocalModel& local) {
   std::vector<Index> rows;
@@ -32,6 +35,17 @@ ModelObserver::ModelObserver(LocalModel local, const ObserverParams& params, int
       disturbances_(
           Matrix::Zero(static_cast<Index>(local_.model().disturbances.size()), delay + 1)) {
   placeEstimated(params.estimated);
+  if (!params.beginsMoving()) return;
+  const TsModel& model = local_.model();
+  const Index n_y = countOf(model.outputs);
+  rest_.setZero(local_.stateSize(), n_y);
+  most_.resize(n_y);
+  for (Index i = 0; i < n_y; ++i) {
+    const SignalInfo& y = model.outputs[static_cast<std::size_t>(i)];
+    most_[i] = std::pow(y.upper - y.lower, 2) / 12.0;
+    local_.restState(Vector::Unit(n_y, i), Vector::Zero(countOf(model.inputs)),
+                     Vector::Zero(countOf(model.disturbances)), rest_.col(i));
+  }
 }
 
 void ModelObserver::placeEstimated(const std::vector<EstimatedDisturbance>& estimated) {
@@ -43,7 +57,9 @@ void ModelObserver::placeEstimated(const std::vector<EstimatedDisturbance>& esti
                 (known.empty() ? "none" : join(known)));
     const auto place = static_cast<int>(found - known.begin());
     const int lags = local_.model().maxLag(SignalKind::kUnmeasured, place);
-    hidden_.push_back({local_.unmeasuredState(place), std::max(lags, 0) + 1, d.std, d.walk_std});
+    const double walked = std::round(std::pow(d.std / d.walk_std, 2));
+    hidden_.push_back({local_.unmeasuredState(place), std::max(lags, 0) + 1, d.std, d.walk_std,
+                       static_cast<int>(std::min<double>(walked, kLongestWalk))});
   }
 }
 
@@ -65,6 +81,27 @@ void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturban
   before_start_ = known ? -1 : inputs_.cols() - 1;
   begun_ = true;
   if (known) loosen(&Hidden::walk_std, kUnknownChanges);
+  if (!known && rest_.size() > 0) walkToStart();
+}
+
+/// The covariance at the start of a process that rested, then moved with its disturbances. A walk
+/// ends where an output may be anywhere in its range: an unstable process has not gone on so long.
+void ModelObserver::walkToStart() {
+  before_start_ = -1;
+  filter_.beCertain();
+  int left = 0;
+  for (const Hidden& d : hidden_) left = std::max(left, d.walked);
+  const auto isWithin = [&] {
+    for (Index i = 0; i < most_.size(); ++i)
+      if (filter_.variance(local_.outputState(i)) > most_[i]) return false;
+    return true;
+  };
+  for (; left > 0 && isWithin(); --left) {
+    filter_.predict(local_.affine().A);
+    for (const Hidden& d : hidden_)
+      if (left <= d.walked) filter_.loosen(d.row, d.walk_std);
+  }
+  filter_.readAfterRest(rest_, local_.affine().A);
 }
 
 void ModelObserver::inherit(const ModelObserver& other) {

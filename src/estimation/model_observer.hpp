@@ -14,7 +14,9 @@ namespace fpc {
 /// samples old correct the state of that time; from there the model runs forward on the inputs
 /// applied since, with the disturbance estimated. Unmeasured disturbances of the model are rows of
 /// its state that nothing moves: taken to be 0 until the start, when they jump, and to walk from
-/// there on. Per sample: rest() or advance(). Fixed work, no allocation after construction.
+/// there on; where they alone change (disturbance_std 0), to have walked before the start, too,
+/// from a rest at outputs that nobody read. Per sample: rest() or advance(). Fixed work, no
+/// allocation after construction.
 class ModelObserver {
  public:
   /// local: of the undelayed process. delay >= 0 samples. @throws InputError of ObserverParams, and
@@ -45,9 +47,11 @@ class ModelObserver {
   struct Hidden {
     Eigen::Index row, rows;  ///< in the state
     double std, walk_std;
+    int walked;  ///< samples before the start, if it begins moving
   };
   void placeEstimated(const std::vector<EstimatedDisturbance>& estimated);
   void loosen(double Hidden::*std, double times = 1.0);
+  void walkToStart();
   void move(VectorRef input, VectorRef disturbances, Vector& state);
 
   LocalModel local_;
@@ -55,6 +59,8 @@ class ModelObserver {
   Vector delayed_, state_, before_, next_;
   Matrix inputs_, disturbances_;  ///< of the last samples, oldest first
   std::vector<Hidden> hidden_;
+  Matrix rest_;                  ///< n_x n_y, state at rest of an output 1; empty: not asked for
+  Vector most_;                  ///< n_y, variance of a reading anywhere in the range
   Eigen::Index before_start_{};  ///< samples that delayed() is before the start
   bool begun_{false};
 };

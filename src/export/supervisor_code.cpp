@@ -35,7 +35,7 @@ class SupervisorCode final : public LawCode {
     p_.loop(b_.n_u, [&](const Value& i) { p_.set(b_.u[i], b_.applied[i]); });
     p_.set(error_, b_.y[params_.output] - b_.setpoint[params_.output]);
     p_.set(direct_,
-           params_.gain * error_ +
+           params_.kp * error_ +
                params_.load_gain *
                    (b_.d[params_.concentration] * b_.d[params_.flow] / params_.nominal_load - 1.0));
     p_.when(transfer_ && ir::sane(direct_), [&] {
@@ -62,7 +62,7 @@ class SupervisorCode final : public LawCode {
     clipInputs(b_, b_.u, b_.applied);
     p_.when(u != unclipped_ && !handed_,
             [&] { p_.set(b_.source, static_cast<int>(ActionSource::kClipped)); });
-    p_.set(integral_, integral_ + hours_ * (params_.gain * error_ / params_.integral_time_h +
+    p_.set(integral_, integral_ + hours_ * (params_.ki_per_h * error_ +
                                             (u - unclipped_) / params_.tracking_time_h));
     p_.clamp(integral_, -limit, limit);
   }

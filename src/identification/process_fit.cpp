@@ -81,6 +81,20 @@ class Fitter {
     return shortenLags(*best, fit) ? finish(*best) : fit;
   }
 
+  std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit) const {
+    if (static_cast<Index>(rows_.size()) < kFewestRows) return std::nullopt;
+    Candidate c;
+    c.kind = fit.kind;
+    for (const ElementEstimate& e : fit.elements) {
+      c.elements.push_back(e.element);
+      c.shapes.push_back(e.seen ? kFirst : kNone);
+      if (e.seen && c.kind == ProcessKind::kUnstable) c.pole = -e.element.time_constant / Ts_;
+    }
+    chooseNoise(c, schwarz());
+    const Vector e = errorsOf(c, residualOf(c));
+    return ProcessNoise{c.noise, std::sqrt(e.squaredNorm() / static_cast<double>(e.size()))};
+  }
+
  private:
   /// The record does not show that the effects of the inputs come to an end.
   bool endsNowhere(const Candidate& c) const {
@@ -858,6 +872,16 @@ ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_
       moves = inputs(k, j) != inputs(0, j) && std::isfinite(inputs(k, j));
   require(moves, "record", "an input that moves");
   return Fitter(inputs, output, sample_time_s, params).best();
+}
+
+std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit, const Matrix& inputs,
+                                        const Vector& output, double sample_time_s) {
+  require(
+      inputs.rows() == output.size() && inputs.cols() == static_cast<Index>(fit.elements.size()),
+      "record", "a row of inputs per output, and the columns of the fit");
+  require(sample_time_s > 0.0, "sample time", "a time > 0");
+  if (output.size() < kFewestRows || !inputs.row(0).allFinite()) return std::nullopt;
+  return Fitter(inputs, output, sample_time_s, {}).noiseBeside(fit);
 }
 
 }  // namespace fpc

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "model/process_element.hpp"
@@ -51,5 +52,18 @@ struct ProcessFit {
 /// @throws InputError for fewer than 30 rows, sizes, or inputs none of which moves.
 ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_time_s,
                       const ProcessFitParams& params = {});
+
+/// What an output does beside its elements.
+struct ProcessNoise {
+  Vector terms;       ///< as ProcessFit::noise
+  double one_step{};  ///< as ProcessFit::one_step
+};
+
+/// Of a fitted process on another record with the same columns; the inputs may stand still. After
+/// large moves the noise of a fit holds what is not linear in the process as well; on a record of
+/// normal operation it does not. Empty: fewer than 30 rows without a gap.
+/// @throws InputError for sizes.
+std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit, const Matrix& inputs,
+                                        const Vector& output, double sample_time_s);
 
 }  // namespace fpc

@@ -1,16 +1,12 @@
 // The inputs that a law plans, and who else takes them for what it expects.
 #pragma once
 
+#include "control/controller_around.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "runtime/link_inbox.hpp"
 #include "runtime/session.hpp"
 
 namespace fpc {
-
-/// The action is what a law proposed, inside the limits: only that is followed by a plan.
-inline bool isLawsOwn(ActionSource source) {
-  return source == ActionSource::kBase || source == ActionSource::kClipped;
-}
 
 /// n_u n_c, column i is u(k+i) of the law's own model and feedback: what an optimizer changes is
 /// not in it.

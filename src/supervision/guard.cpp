@@ -25,10 +25,6 @@ void place(const Measurement& now, VectorRef input, Vector& point) {
 
 constexpr double kHalf = 0.5;  // of an input's range
 
-bool isLaws(ActionSource source) {
-  return source == ActionSource::kBase || source == ActionSource::kClipped;
-}
-
 }  // namespace
 
 void GuardParams::validate(Index n_y, bool has_fallback) const {
@@ -283,7 +279,7 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
   inside_->step(now, setpoint, output);
   lookAhead(now, output);
   view_.trust = present;
-  const bool acts = isLaws(output.source);
+  const bool acts = isLawsOwn(output.source);
   if (acts) {
     view_.trust = std::min(present, trustAt(now, output.input));
     fallBack(now, process < params_.trust_low);

@@ -136,8 +136,8 @@ std::set<std::string> readerKeys() {
   const std::string adaptive =
       "plant: {type: distillation_column}\ncontroller: {type: adaptive_pi, decoupling: false, "
       "loops: "
-      "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
-      "integral_time_min: 1}], model: [{output: y_D, from: L, gain: 1, time_constant_min: 1}]}\n";
+      "[{input: L, output: y_D, kp: 1, ki_per_h: 1}, {input: V, output: x_B, kp: 1, "
+      "ki_per_h: 1}], model: [{output: y_D, from: L, gain: 1, time_constant_min: 1}]}\n";
   std::vector<std::string> texts{controlled(fmbpc + lists),
                                  controlled(external),
                                  controlled(column),

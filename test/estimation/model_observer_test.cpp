@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <cmath>
+#include <random>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -107,6 +109,78 @@ TEST(ModelObserver, EstimatesWhatNobodyMeasures) {
   }
 }
 
+/// What rested at an unknown output, walked 25 samples and is then read eleven times, by least
+/// squares over where it rested and each change of w; u = 0.
+struct WalkBeforeStart {
+  static constexpr int kWalked = 25, kRead = 10, kUnknown = 1 + kWalked + kRead;
+  static constexpr double kNoise = 0.05, kWalk = 0.02;
+
+  /// y at the start and later, then w at the end. theta: y at rest, changes of w.
+  static Vector course(const Vector& theta) {
+    Vector seen(kRead + 2);
+    double y = theta[0], w = 0.0, before = 0.0;
+    for (int k = 0; k < kWalked + kRead; ++k) {
+      if (k >= kWalked) seen[k - kWalked] = y;
+      y = 0.8 * y + 2.0 * w - 1.5 * before + 0.2 * theta[0];
+      before = w;
+      w += theta[1 + k];
+    }
+    seen[kRead] = y;
+    seen[kRead + 1] = w;
+    return seen;
+  }
+
+  static Vector leastSquares(const Vector& readings) {
+    Matrix A = Matrix::Zero(readings.size() + kUnknown - 1, kUnknown);
+    Vector b = Vector::Zero(A.rows());
+    for (int j = 0; j < kUnknown; ++j)
+      A.col(j).head(readings.size()) =
+          course(Vector::Unit(kUnknown, j)).head(readings.size()) / kNoise;
+    b.head(readings.size()) = readings / kNoise;
+    for (int j = 1; j < kUnknown; ++j) A(readings.size() + j - 1, j) = 1.0 / kWalk;
+    return A.colPivHouseholderQr().solve(b);
+  }
+};
+
+TEST(ModelObserver, BeginsWithAProcessThatHasMovedBeforeTheStart) {
+  using Walk = WalkBeforeStart;
+  ObserverParams moving = params(Walk::kNoise);
+  moving.disturbance_std[0] = 0.0;
+  moving.estimated = {{"w", 5.0 * Walk::kWalk, Walk::kWalk}};  // 5^2 = 25 samples
+  TsModel wide = modelOfUnmeasured();
+  wide.outputs[0].lower = -1e6;
+  ModelObserver observer(LocalModel(wide), moving, 0);
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 20; ++round) {
+    Vector theta(Walk::kUnknown);
+    for (double& value : theta) value = Walk::kWalk * normal(engine);
+    theta[0] = 10.0 * normal(engine);
+    Vector readings = Walk::course(theta).head(Walk::kRead + 1);
+    for (double& value : readings) value += Walk::kNoise * normal(engine);
+    observer.rest(one(readings[0]), one(0.0), Vector());
+    for (int k = 1; k <= Walk::kRead; ++k) observer.advance(one(readings[k]), one(0.0), Vector());
+    const Vector best = Walk::course(Walk::leastSquares(readings));
+    EXPECT_NEAR(observer.state()[0], best[Walk::kRead], 1e-7);
+    EXPECT_NEAR(observer.estimated(0), best[Walk::kRead + 1], 1e-7);
+  }
+}
+
+TEST(ModelObserver, AnUnstableProcessHasNotMovedOutOfItsRangeBeforeTheStart) {
+  TsModel unstable = modelOfUnmeasured();
+  unstable.submodels[0].rules[0].coefficients[0] = 1.5;
+  ObserverParams moving = params(0.05);
+  moving.disturbance_std[0] = 0.0;
+  moving.estimated = {{"w", 1e6, 0.001}};
+  ModelObserver observer(LocalModel(unstable), moving, 0);
+  observer.rest(one(0.5), one(0.0), Vector());
+  observer.advance(one(0.6), one(0.0), Vector());
+  EXPECT_TRUE(observer.state().allFinite());
+  EXPECT_GT(observer.innovation()[0], 0.0);
+  EXPECT_NE(observer.estimated(0), 0.0);
+  EXPECT_LT(std::abs(observer.estimated(0)), 1.0);
+}
+
 TEST(ModelObserver, ARestInTheRunKeepsWhatNobodyMeasuresAndANewRunDoesNot) {
   ObserverParams known = params(0.001);
   known.disturbance_std[0] = 1e-6;
@@ -138,18 +212,20 @@ TEST(ModelObserver, ARestInTheRunKeepsWhatNobodyMeasuresAndANewRunDoesNot) {
 
 TEST(ModelObserver, FollowsAWalkOfWhatNobodyMeasures) {
   ObserverParams known = params(0.001);
-  known.disturbance_std[0] = 0.0;  // what the model lacks at rest stays
+  known.disturbance_std[0] = 0.0;  // how much of what is lacking at rest was w stays open
   known.estimated = {{"w", 1.0, 0.05}};
   ModelObserver observer(LocalModel(modelOfUnmeasured()), known, 0);
   observer.rest(one(0.5), one(0.0), Vector());
-  double y = 0.5, before = 0.0;
+  double y = 0.5, before = 0.0, found = 0.0;
   for (int k = 0; k < 200; ++k) {
     const double w = k < 100 ? 0.3 : -0.2;
+    if (k == 100) found = observer.estimated(0);
     y = 0.8 * y + 2.0 * w - 1.5 * before + 0.1;
     before = w;
     observer.advance(one(y), one(0.0), Vector());
   }
-  EXPECT_NEAR(observer.estimated(0), -0.2, 0.01);
+  EXPECT_NEAR(observer.estimated(0) - found, -0.5, 0.01);
+  EXPECT_NEAR(observer.innovation()[0], 0.0, 0.01);
 }
 
 TEST(ModelObserver, NamesAnEstimatedDisturbanceThatTheModelLacks) {

@@ -198,5 +198,63 @@ TEST(ProcessFit, RefusesWhatCannotBeFitted) {
   EXPECT_THROW(fitProcess(Matrix::Random(100, 1), Vector::Zero(90), 1.0), InputError);
 }
 
+/// Columns of `inputs` that stand still, and an output of autoregressive noise behind a pole.
+Data calm(double pole, double past, double sigma, Index rows, std::uint64_t seed) {
+  auto engine = seededEngine(seed, {});
+  Data d;
+  d.u = Matrix::Constant(rows, 1, 3.0);
+  d.y.resize(rows);
+  double r = 0.0, y = 0.0;
+  for (Index k = 0; k < rows; ++k) {
+    r = past * r + sigma * standardNormal(engine);
+    y = pole * y + r;
+    d.y[k] = 40.0 + y;
+  }
+  return d;
+}
+
+TEST(ProcessNoise, IsFoundWhereTheInputsStandStill) {
+  for (const ProcessKind kind :
+       {ProcessKind::kStable, ProcessKind::kIntegrating, ProcessKind::kUnstable}) {
+    ProcessFit fit;
+    fit.kind = kind;
+    fit.elements.resize(1);
+    fit.elements[0].element = lag(2.0, kind == ProcessKind::kUnstable ? -50.0 : 12.0, 1.0);
+    fit.elements[0].element.integrating = kind == ProcessKind::kIntegrating;
+    fit.elements[0].seen = true;
+    const double pole = kind == ProcessKind::kStable        ? 0.0
+                        : kind == ProcessKind::kIntegrating ? 1.0
+                                                            : std::exp(1.0 / 50.0);
+    const Data d = calm(pole, 0.6, 0.05, 400, 5);
+    const auto noise = noiseBeside(fit, d.u, d.y, 1.0);
+    ASSERT_TRUE(noise.has_value());
+    ASSERT_GE(noise->terms.size(), 1);
+    EXPECT_NEAR(noise->terms[0], 0.6, 0.12) << "three standard deviations";
+    EXPECT_NEAR(noise->one_step, 0.05, 0.006);
+  }
+}
+
+// A test that moves a bent plant leaves in its noise what is bent; normal operation does not.
+TEST(ProcessNoise, OfNormalOperationLeavesOutWhatIsNotLinear) {
+  const ProcessElement e = lag(2.0, 12.0, 3.4);
+  Data d = record(e, 0.0, 0.0, 1.0, {0.02}, 600, 1);
+  for (double& y : d.y) y += 0.2 * y * y;
+  const ProcessFit fit = fitProcess(d.u, d.y, 1.0);
+  EXPECT_GT(fit.free_run, 0.1);
+  const Data quiet = calm(0.0, 0.0, 0.02, 200, 2);
+  const auto noise = noiseBeside(fit, quiet.u, quiet.y, 1.0);
+  ASSERT_TRUE(noise.has_value());
+  EXPECT_LT(noise->terms.cwiseAbs().sum(), 0.3);
+  EXPECT_NEAR(noise->one_step, 0.02, 0.004);
+}
+
+TEST(ProcessNoise, AsksForRowsAndForTheColumnsOfTheFit) {
+  ProcessFit fit;
+  fit.elements.resize(1);
+  const Data few = calm(0.0, 0.0, 0.02, 35, 2);
+  EXPECT_FALSE(noiseBeside(fit, few.u, few.y, 1.0).has_value());
+  EXPECT_THROW(noiseBeside(fit, Matrix::Zero(35, 2), few.y, 1.0), InputError);
+}
+
 }  // namespace process_fit_test
 }  // namespace fpc

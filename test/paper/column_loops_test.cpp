@@ -63,7 +63,7 @@ TEST(ColumnTables, PsoLoopTwoAsPrintedIsNotThatOfTheTablesButAFitIs) {
                        paper_5),
             0.3);
   const Overrides fit = {{"controller.loops.1.kp", "-0.13"},
-                         {"controller.loops.1.integral_time_min", "16.129"}};
+                         {"controller.loops.1.ki_per_h", "-0.48360"}};
   EXPECT_LT(worstRatio("table 4 PSO x_B fitted",
                        columnIndices(columnRun("column_pso_bottom", fit), 1), paper_4),
             0.06);
@@ -73,9 +73,8 @@ TEST(ColumnTables, PsoLoopTwoAsPrintedIsNotThatOfTheTablesButAFitIs) {
 }
 
 TEST(ColumnTables, ThePrintedTiReadAsATimeIsUnstable) {
-  const RunRecord run =
-      columnRun("column_pso", {{"controller.loops.0.integral_time_min", "0.0475"},
-                               {"controller.loops.1.integral_time_min", "0.0312"}});
+  const RunRecord run = columnRun("column_pso", {{"controller.loops.0.ki_per_h", "772.55"},
+                                                 {"controller.loops.1.ki_per_h", "-277.31"}});
   EXPECT_GT(columnIndices(run, 0).iae, 10.0 * columnIndices(columnRun("column_pso"), 0).iae);
 }
 
@@ -87,9 +86,8 @@ double peak(const RunRecord& record, Eigen::Index i) {
 }
 
 TEST(ColumnTables, TheFeedMovesBothCompositionsAsTheTextSays) {
-  const RunRecord run = columnRun(
-      "column_pso_feed",
-      {{"controller.loops.1.kp", "-0.1207"}, {"controller.loops.1.integral_time_min", "14.94"}});
+  const RunRecord run = columnRun("column_pso_feed", {{"controller.loops.1.kp", "-0.1207"},
+                                                      {"controller.loops.1.ki_per_h", "-0.48474"}});
   const double top = 100.0 * peak(run, 0) / 96.25, bottom = 100.0 * peak(run, 1) / 0.5;
   std::printf("peaks under feed: y_D %.4f %% (0.0995), x_B %.2f %% (63.82; reference 63.5)\n", top,
               bottom);

@@ -55,11 +55,12 @@ std::string derivative(Dice& dice, const RandomFrame& frame, double kp) {
 /// Of the plants that have a load to be fed forward.
 std::string loadSupervisor(Dice& dice, RandomFrame& frame) {
   const Quantity& u = frame.plant.inputs.front();
-  const double gain = spanOf(u) / spanOf(frame.outputs.front()) * dice.scale(0.05, 3.0);
+  double kp = spanOf(u) / spanOf(frame.outputs.front()) * dice.scale(0.05, 3.0);
+  if (dice.chance(0.3)) kp = -kp;
   const auto hours = [&] { return Dice::rounded(frame.hours(dice.scale(1.0, 200.0))); };
   std::string text = "  input: " + u.name + "\n  output: " + frame.outputs.front().name +
-                     "\n  gain: " + Dice::rounded(dice.chance(0.3) ? -gain : gain) +
-                     "\n  integral_time_h: " + hours() +
+                     "\n  kp: " + Dice::rounded(kp) +
+                     "\n  ki_per_h: " + Dice::rounded(kp / frame.hours(dice.scale(1.0, 200.0))) +
                      "\n  load: {concentration: S_NH_in, flow: Q_in, gain: " +
                      Dice::rounded(spanOf(u) * dice.between(-1.0, 2.0)) + "}\n";
   if (dice.chance(0.5)) text += "  tracking_time_h: " + hours() + "\n";
@@ -164,9 +165,9 @@ std::string hybrid(Dice& dice, RandomFrame& frame) {
 /// The settings of the shipped loops, gains varied.
 std::string adaptivePi(Dice& dice, RandomFrame&) {
   std::string text = "  loops:\n    - {input: L, output: y_D, kp: " + dice.number(0.1, 0.6) +
-                     ", integral_time_min: " + dice.number(10.0, 30.0) +
+                     ", ki_per_h: " + dice.number(0.4, 1.6) +
                      "}\n    - {input: V, output: x_B, kp: " + dice.number(-0.15, -0.03) +
-                     ", integral_time_min: " + dice.number(10.0, 30.0) + "}\n" +
+                     ", ki_per_h: " + dice.number(-0.4, -0.1) + "}\n" +
                      "  decoupling: " + (dice.chance(0.7) ? "true" : "false") + "\n  model:\n";
   const std::vector<std::string> elements{
       "output: y_D, from: L, gain: 12.8, time_constant_min: 16.7, dead_time_min: 1",

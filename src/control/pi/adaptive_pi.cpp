@@ -64,7 +64,7 @@ AdaptivePi::AdaptivePi(const AdaptivePiParams& params, InputLimits limits, Plant
   for (const std::size_t i : kLoops) {
     const AdaptiveLoop& loop = params.loops[i];
     s.loops[i].kp = s.loops[i].kp_model = loop.kp;
-    s.loops[i].ti = loop.integral_time_min;
+    s.loops[i].ti = 60.0 * loop.kp / loop.ki_per_h;
     if (params.adaptation.enabled)
       s.estimators.emplace_back(params.model[i], s.dt, params.adaptation.estimator);
   }

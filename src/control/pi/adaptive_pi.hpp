@@ -18,8 +18,8 @@ namespace fpc {
 /// integral counts the present error (backward Euler).
 struct AdaptiveLoop {
   int input{}, output{};
-  double kp{};                 ///< input units per output unit
-  double integral_time_min{};  ///< Ti > 0
+  double kp{};        ///< input units per output unit
+  double ki_per_h{};  ///< kp / Ti, of the same sign
 };
 
 /// When, and how far, the loops may be retuned.

@@ -11,8 +11,8 @@ void validateLoop(const AdaptiveLoop& loop, const std::string& key) {
   require(loop.input >= 0 && loop.input < 2, key + "input", "one of the plant's inputs");
   require(loop.output >= 0 && loop.output < 2, key + "output", "one of the plant's outputs");
   require(std::isfinite(loop.kp), key + "kp", "a finite number");
-  require(std::isfinite(loop.integral_time_min) && loop.integral_time_min > 0.0,
-          key + "integral_time_min", "a time > 0");
+  require(std::isfinite(loop.ki_per_h) && loop.kp * loop.ki_per_h > 0.0, key + "ki_per_h",
+          "a number with the sign of kp");
 }
 
 }  // namespace

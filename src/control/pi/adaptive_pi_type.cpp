@@ -17,9 +17,9 @@ void readLoops(YamlSection& section, AdaptivePiParams& params, const ControllerC
     YamlSection& item = items[i];
     loop.input = indexByName(item, "input", context.inputs());
     loop.output = indexByName(item, "output", context.outputs());
-    for (const char* key : {"kp", "integral_time_min"}) need(item, key, "a number");
+    for (const char* key : {"kp", "ki_per_h"}) need(item, key, "a number");
     item.number("kp", loop.kp, kFinite);
-    item.number("integral_time_min", loop.integral_time_min, kFinitePositive);
+    item.number("ki_per_h", loop.ki_per_h, kFinite);
     item.finish();
   }
 }

@@ -10,11 +10,11 @@ namespace fpc {
 void LoadSupervisorParams::validate() const {
   const std::string key = "controller.";
   for (const auto& [name, value] :
-       {std::pair{"gain", gain}, {"load.gain", load_gain}, {"load.nominal", nominal_load}})
+       {std::pair{"kp", kp}, {"load.gain", load_gain}, {"load.nominal", nominal_load}})
     require(std::isfinite(value), key + name, "a finite number");
   require(nominal_load > 0.0, key + "load.nominal", "a number > 0");
-  require(std::isfinite(integral_time_h) && integral_time_h > 0.0, key + "integral_time_h",
-          "a time > 0");
+  require(std::isfinite(ki_per_h) && kp * ki_per_h > 0.0, key + "ki_per_h",
+          "a number with the sign of kp");
   require(std::isfinite(tracking_time_h) && tracking_time_h > 0.0, key + "tracking_time_h",
           "a time > 0");
   require(integral_limit >= 0.0, key + "integral_limit", "a number >= 0");
@@ -36,8 +36,9 @@ const SettingsTable<LoadSupervisorParams>& loadSupervisorSettings() {
   using Params = LoadSupervisorParams;
   static const SettingsTable<Params> table =
       SettingsTable<Params>()
-          .number("gain", &Params::gain, "input unit per output unit", -1e9, 1e9)
-          .number("integral_time_h", &Params::integral_time_h, "Ti [h]", 1e-6, 1e6)
+          .number("kp", &Params::kp, "input unit per output unit", -1e9, 1e9)
+          .number("ki_per_h", &Params::ki_per_h, "kp / Ti, input unit per output unit and h", -1e9,
+                  1e9)
           .number("tracking_time_h", &Params::tracking_time_h, "Tt [h]", 1e-6, 1e6)
           .number("load_gain", &Params::load_gain, "input unit per relative load: load.gain", -1e9,
                   1e9);
@@ -65,7 +66,7 @@ void LoadSupervisor::reset(const Measurement& start) {
 double LoadSupervisor::ahead(const Measurement& now, double error) const {
   const double load = now.disturbances[params_.concentration] * now.disturbances[params_.flow] /
                       params_.nominal_load;
-  return params_.gain * error + params_.load_gain * (load - 1.0);
+  return params_.kp * error + params_.load_gain * (load - 1.0);
 }
 
 void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint,
@@ -97,11 +98,10 @@ void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint
   u = handed ? u : unclipped;
   limits_.clip(output.input, now.input_applied);
   if (u != unclipped && !handed) output.source = ActionSource::kClipped;
-  const double rate =
-      params_.gain * error / params_.integral_time_h + (u - unclipped) / params_.tracking_time_h;
+  const double rate = params_.ki_per_h * error + (u - unclipped) / params_.tracking_time_h;
   integral_ = std::clamp(integral_ + sample_time_h_ * rate, -limit, limit);
   signals_[0].second = integral_;
-  signals_[1].second = (direct - params_.gain * error);
+  signals_[1].second = (direct - params_.kp * error);
 }
 
 }  // namespace fpc

@@ -11,14 +11,15 @@
 
 namespace fpc {
 
-/// e = y - setpoint,  v = gain e + I + load_gain (concentration flow / nominal load - 1),
-/// u = clip(v),  dI/dt = gain e / Ti + (u - v) / Tt,  |I| <= integral_limit.
+/// e = y - setpoint,  v = kp e + I + load_gain (concentration flow / nominal load - 1),
+/// u = clip(v),  dI/dt = ki e + (u - v) / Tt,  |I| <= integral_limit.
 struct LoadSupervisorParams {
   int input{}, output{};
   int concentration{}, flow{};  ///< measured disturbances whose product is the load
   double nominal_load{1.0};     ///< their product at the usual load
-  double gain{}, load_gain{};   ///< input per output unit; input per relative load
-  double integral_time_h{1.0}, tracking_time_h{1.0};
+  double kp{}, ki_per_h{};      ///< input per output unit, and hour; of the same sign
+  double load_gain{};           ///< input per relative load
+  double tracking_time_h{1.0};
   double integral_limit{1e9};  ///< in units of the input
   void validate() const;       ///< @throws InputError naming the field
 };

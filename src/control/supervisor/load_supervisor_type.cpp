@@ -9,10 +9,10 @@ LoadSupervisorParams readSupervisor(YamlSection& section, const ControllerContex
   LoadSupervisorParams params;
   params.input = indexByName(section, "input", loop.inputs());
   params.output = indexByName(section, "output", loop.outputs());
-  for (const char* key : {"gain", "integral_time_h"}) need(section, key, "a number");
-  section.number("gain", params.gain, kFinite);
-  section.number("integral_time_h", params.integral_time_h, kFinitePositive);
-  params.tracking_time_h = params.integral_time_h;
+  for (const char* key : {"kp", "ki_per_h"}) need(section, key, "a number");
+  section.number("kp", params.kp, kFinite);
+  section.number("ki_per_h", params.ki_per_h, kFinite);
+  if (params.ki_per_h != 0.0) params.tracking_time_h = params.kp / params.ki_per_h;
   section.number("tracking_time_h", params.tracking_time_h, kFinitePositive);
   section.number("integral_limit", params.integral_limit, kFiniteNotNegative);
   YamlSection load = section.section("load");

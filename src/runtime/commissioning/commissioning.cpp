@@ -297,10 +297,15 @@ OrderedJson Commissioning::findModel() {
 
 OrderedJson Commissioning::design() {
   const Watched watched = watchedOf(figures(Stage::kWatch));
-  Vector noise(countOf(watched.outputs));
-  for (Index i = 0; i < noise.size(); ++i)
-    noise[i] = watched.outputs[static_cast<std::size_t>(i)].noise;
-  const ProcessModels models = readModels(folder_);
+  Vector noise(countOf(watched.outputs)), rounding = noise;
+  for (Index i = 0; i < noise.size(); ++i) {
+    const WatchedOutput& y = watched.outputs[static_cast<std::size_t>(i)];
+    noise[i] = y.noise;
+    rounding[i] = y.resolution / std::sqrt(12.0);
+  }
+  ProcessModels models = readModels(folder_);
+  takeNoiseInOperation(PlantRecord::read(inFolder(folder_, "watch.csv"), brief_.loop.plant_info),
+                       watched.first, rounding, models);
   DesignParams params;
   params.evaluations = options_.evaluations;
   params.threads = options_.threads;

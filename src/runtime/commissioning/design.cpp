@@ -424,8 +424,9 @@ class Designer {
     const char* comma = "";
     for (std::size_t i = 0; i < counted.size(); ++i) {
       if (!counted[i]) continue;
-      const std::string text = exactText(walk[static_cast<Index>(i)]);
-      c << comma << loadName(plant.outputs[i].name) << ": {std: " << text << ", walk_std: " << text
+      const double change = walk[static_cast<Index>(i)];
+      c << comma << loadName(plant.outputs[i].name)
+        << ": {std: " << exactText(kUnknownChanges * change) << ", walk_std: " << exactText(change)
         << "}";
       comma = ", ";
     }

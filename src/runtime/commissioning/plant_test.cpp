@@ -201,20 +201,31 @@ void PlantTest::predict(const Vector& present) {
     }
 }
 
-/// By how much the limits would be left under these levels, in parts of the room.
-double PlantTest::excess(const std::vector<int>& levels) const {
+/// By how much each output would leave its limits under these levels, in parts of the room.
+Vector PlantTest::excess(const std::vector<int>& levels) const {
   const Index H = ahead_.front().cols();
   Matrix change = Matrix::Zero(n_y_, H);
   for (Index j = 0; j < n_u_; ++j)
     change += ahead_[static_cast<std::size_t>(3 * j + levels[static_cast<std::size_t>(j)] + 1)];
-  double total = 0.0;
+  Vector excess(n_y_);
   for (Index i = 0; i < n_y_; ++i) {
     const double kept = kNoises * params_.noise[i] + kLastPart * room_[i];
     const double up = last_output_[i] + change.row(i).maxCoeff() - (params_.upper[i] - kept),
                  down = params_.lower[i] + kept - (last_output_[i] + change.row(i).minCoeff());
-    total += std::max({up, down, 0.0}) / room_[i];
+    excess[i] = std::max({up, down, 0.0}) / room_[i];
   }
-  return total;
+  return excess;
+}
+
+/// What no level keeps inside its limits may be moved by inputs of which not even the direction is
+/// known: they are left to the control in charge.
+void PlantTest::leaveUnsure(std::vector<int>& levels) const {
+  const Vector left = excess(levels);
+  for (Index i = 0; i < n_y_; ++i)
+    for (Index j = 0; j < n_u_ && left[i] > 0.0; ++j) {
+      const Track& t = tracks_[static_cast<std::size_t>(i * n_u_ + j)];
+      if (!t.seen || t.margin >= 1.0) levels[static_cast<std::size_t>(j)] = 0;
+    }
 }
 
 bool PlantTest::nearLimit() const {
@@ -255,7 +266,7 @@ const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
     if (nearLimit()) std::fill(taken.begin(), taken.end(), 0);
   } else {
     predict(present);
-    double least = excess(taken);
+    double least = excess(taken).sum();
     // The input that helps most is turned, or left out, until no limit is left any more.
     for (std::size_t round = 0; round < taken.size() && least > 0.0; ++round) {
       std::vector<int> best = taken;
@@ -263,7 +274,7 @@ const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
         for (int level = -1; level <= 1; ++level) {
           std::vector<int> other = taken;
           other[j] = level;
-          const double value = excess(other);
+          const double value = excess(other).sum();
           if (value < least - 1e-12) {
             least = value;
             best = other;
@@ -272,6 +283,7 @@ const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
       if (best == taken) break;
       taken = best;
     }
+    if (least > 0.0) leaveUnsure(taken);
   }
   if (taken != asked) ++turned_;
   level_ = taken;

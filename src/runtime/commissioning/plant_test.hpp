@@ -63,7 +63,8 @@ class PlantTest {
   void judge();
   bool knowsDisturbances() const;
   void setAmplitudes();
-  double excess(const std::vector<int>& levels) const;
+  Vector excess(const std::vector<int>& levels) const;
+  void leaveUnsure(std::vector<int>& levels) const;
   void follow();
   void predict(const Vector& present);
   bool nearLimit() const;

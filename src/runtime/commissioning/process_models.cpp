@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "base/decompositions.hpp"
 #include "base/files.hpp"
@@ -218,6 +219,19 @@ ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits
   for (int member = 0; member < members; ++member)
     models.ensemble.push_back(modelOf(names, fits, member, loads));
   return models;
+}
+
+void takeNoiseInOperation(const PlantRecord& watched, Index first, const Vector& least,
+                          ProcessModels& models) {
+  const Matrix inputs = watched.inputsAndDisturbances();
+  for (std::size_t i = 0; i < models.fits.size(); ++i) {
+    Vector output = watched.outputs().col(static_cast<Index>(i));
+    output.head(first).setConstant(std::numeric_limits<double>::quiet_NaN());
+    const auto noise = noiseBeside(models.fits[i], inputs, output, watched.info().sample_time_s);
+    if (!noise) continue;
+    models.fits[i].noise = noise->terms;
+    models.fits[i].one_step = std::max(noise->one_step, least[static_cast<Index>(i)]);
+  }
 }
 
 ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members,

@@ -35,6 +35,11 @@ ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits
 /// record shows stay. @throws InputError naming an output that no input moves.
 ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members,
                          const std::function<bool(const ProcessModels&)>& holds);
+/// The noise of the fits becomes that of the plant in operation, from row `first` of a record
+/// without a test; `least`: n_y, of its one-step errors. Where that has too few rows the test's
+/// stays.
+void takeNoiseInOperation(const PlantRecord& watched, Eigen::Index first, const Vector& least,
+                          ProcessModels& models);
 /// Elements with their bounds, kinds and errors, those of the ensemble too.
 OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant);
 /// model.yaml and ensemble/NUMBER.yaml, each a plant of type model.

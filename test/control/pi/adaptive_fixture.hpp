@@ -11,8 +11,8 @@ namespace fpc::test {
 
 inline AdaptivePiParams adaptiveParams() {
   AdaptivePiParams params;
-  params.loops[0] = {0, 0, 0.5, 20.0};
-  params.loops[1] = {1, 1, -0.1, 15.0};
+  params.loops[0] = {0, 0, 0.5, 1.5};
+  params.loops[1] = {1, 1, -0.1, -0.4};
   params.model = columnMatrix();
   params.adaptation.enabled = true;
   return params;

@@ -118,7 +118,7 @@ TEST(AdaptivePi, RefusesWhatItCannotDo) {
   params.loops[1].input = 0;
   EXPECT_THROW(AdaptiveColumn column(params), InputError);
   params = adaptiveParams();
-  params.loops[0].integral_time_min = 0.0;
+  params.loops[0].ki_per_h = 0.0;
   EXPECT_THROW(AdaptiveColumn column(params), InputError);
   params = adaptiveParams();
   params.adaptation.ratio_upper = 1.0;

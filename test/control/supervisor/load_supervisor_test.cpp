@@ -20,9 +20,9 @@ LoadSupervisorParams params() {
   LoadSupervisorParams p;
   p.flow = 1;
   p.nominal_load = 200.0;
-  p.gain = 2.0;
+  p.kp = 2.0;
   p.load_gain = 3.0;
-  p.integral_time_h = 4.0;
+  p.ki_per_h = 0.5;
   p.tracking_time_h = 2.0;
   p.integral_limit = 0.6;
   return p;
@@ -62,7 +62,7 @@ class Supervisor : public ::testing::Test {
 TEST_F(Supervisor, ErrorIntegralAndLoadAddUpAsOnPaper) {
   law.reset(sample(0, 1.5, 20.0, 10.0, 0.0));
   EXPECT_NEAR(send(sample(0, 1.5, 20.0, 10.0, 0.0)), 2.0 * 0.5, 1e-14);
-  // dt/Ti gain e = 0.5/4 * 1
+  // dt ki e = 0.5 * 0.5 * 0.5
   EXPECT_NEAR(send(sample(1, 1.5, 30.0, 10.0, 1.0)), 1.0 + 0.125 + 3.0 * 0.5, 1e-14);
   EXPECT_EQ(output.input[1], 0.5) << "not its input";
   EXPECT_EQ(output.source, ActionSource::kBase);
@@ -93,9 +93,9 @@ TEST_F(Supervisor, BadParamsAreErrorsThatNameTheField) {
     spoil(p);
     EXPECT_THROW(p.validate(), InputError);
   };
-  throws([](auto& p) { p.gain = std::nan(""); });
+  throws([](auto& p) { p.kp = std::nan(""); });
   throws([](auto& p) { p.nominal_load = 0.0; });
-  throws([](auto& p) { p.integral_time_h = 0.0; });
+  throws([](auto& p) { p.ki_per_h = 0.0; });
   throws([](auto& p) { p.tracking_time_h = -1.0; });
   throws([](auto& p) { p.integral_limit = -1.0; });
 }
