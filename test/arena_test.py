@@ -120,6 +120,15 @@ class Judge(unittest.TestCase):
         actuator = ARENA.on_the_plant(plant, narrow)["actuator"]
         self.assertEqual((actuator["move_upper"], actuator["input_upper"], actuator["input_lower"]), ({"feed": 1}, {"feed": 70}, {"feed": 0}))
 
+    def test_a_test_leaves_no_limit_where_the_effect_of_an_input_is_open(self):
+        # On this draw the record does not show for hours whether Q raises or lowers T, and the control in charge is at its bound.
+        plant = ARENA.Plant("van_de_vusse")
+        with tempfile.TemporaryDirectory() as folder:
+            arena("draw", "van_de_vusse", 2, "--out", f"{folder}/drawn.yaml")
+            brief = ARENA.save(pathlib.Path(folder) / "brief.yaml", {**plant.brief, "loop": f"{folder}/drawn.yaml"})
+            told = json.loads(ARENA.fmbpc("commission", brief, "--folder", f"{folder}/c", "--until", "test", "--no-plot", "--json"))
+        self.assertEqual(told["test"]["limits_left"], 0)
+
     def test_what_is_missing_is_named(self):
         for arguments, word in (((["judge", "nowhere", "x"]), "nowhere"), ((["judge", "ph", "--reference", self.folder]), "arena_ph")):
             done = subprocess.run([SCRIPT, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)

@@ -212,7 +212,7 @@ TEST(ModelObserver, ARestInTheRunKeepsWhatNobodyMeasuresAndANewRunDoesNot) {
 
 TEST(ModelObserver, FollowsAWalkOfWhatNobodyMeasures) {
   ObserverParams known = params(0.001);
-  known.disturbance_std[0] = 0.0;  // how much of what is lacking at rest was w stays open
+  known.disturbance_std[0] = 0.0;  // whether w was there at rest stays open
   known.estimated = {{"w", 1.0, 0.05}};
   ModelObserver observer(LocalModel(modelOfUnmeasured()), known, 0);
   observer.rest(one(0.5), one(0.0), Vector());

@@ -126,7 +126,7 @@ Late late(const char* title, const std::string& name, Overrides overrides = {}) 
   return sums;
 }
 
-/// The loops as they would be with the gains known: model and kp follow the jump.
+/// The loops as they would be with the gains known: model, kp and ki follow the jump.
 Overrides oracle(double up, double down) {
   const auto text = [](double value) { return std::to_string(value); };
   return {{"controller.model.0.gain", text(12.8 * up)},
@@ -134,7 +134,9 @@ Overrides oracle(double up, double down) {
           {"controller.model.2.gain", text(6.6 * up)},
           {"controller.model.3.gain", text(-19.4 * down)},
           {"controller.loops.0.kp", text(0.6116 / up)},
-          {"controller.loops.1.kp", text(-0.1267 / down)}};
+          {"controller.loops.0.ki_per_h", text(1.74306 / up)},
+          {"controller.loops.1.kp", text(-0.1267 / down)},
+          {"controller.loops.1.ki_per_h", text(-0.46897 / down)}};
 }
 
 TEST(ColumnAdaptation, ComesWithinThreePercentOfTheOracleOnMeasuredSums) {

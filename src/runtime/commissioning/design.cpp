@@ -156,6 +156,9 @@ std::string rewritten(const CommissioningBrief& brief, const std::string& what,
 
 struct PiSetting {
   double kp{}, ti_min{};
+  /// A step of the setpoint through 1 / (Ti s + 1), which takes the zero of the PI away: it would
+  /// throw an unstable process far beyond the step (astrom2008).
+  bool filtered{false};
 };
 
 std::string piLoops(const CommissioningBrief& brief, const Outline& o,
@@ -168,6 +171,10 @@ std::string piLoops(const CommissioningBrief& brief, const Outline& o,
             brief.loop.plant_info.outputs[static_cast<std::size_t>(o.pairs[p].output)].name +
             ", kp: " + exactText(settings[p].kp) +
             ", ki_per_h: " + exactText(settings[p].kp * 60.0 / settings[p].ti_min) +
+            (settings[p].filtered
+                 ? ", setpoint_pole: " + exactText(std::exp(-brief.loop.plant_info.sample_time_s /
+                                                            (60.0 * settings[p].ti_min)))
+                 : "") +
             ", start: bumpless}";
   return text + "]";
 }
@@ -306,11 +313,12 @@ class Designer {
       const double wait = std::max(late + e.second, Ts);
       s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
       s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
+      s.filtered = true;
     } else {
       const Fopdt lag{e.gain, std::max(e.lags(), 0.3 * Ts) / 60.0, late / 60.0};
       const PiTuning t =
           imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
-      s = {t.kp, t.integral_time_min};
+      s = {t.kp, t.integral_time_min, false};
     }
     return s;
   }
@@ -358,7 +366,7 @@ class Designer {
           loop["output"].as<std::string>("") ==
               plant.outputs[static_cast<std::size_t>(pair.output)].name &&
           kp / ki_per_h > 0.0)
-        return {loop["reverse"].as<bool>(false) ? -kp : kp, kp / ki_per_h * 60.0};
+        return {loop["reverse"].as<bool>(false) ? -kp : kp, kp / ki_per_h * 60.0, false};
     }
     return otherwise;
   }
