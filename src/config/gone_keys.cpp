@@ -48,6 +48,7 @@ constexpr std::pair<const char*, const char*> kGone[] = {
     {"controller.loops.imc_time_constant_min", "kp and ki_per_h"},
     {"controller.loops.integral_time_min", "ki_per_h: 60 kp / Ti"},
     {"controller.integral_time_h", "ki_per_h: kp / Ti"},
+    {"controller.gain", "kp of a load_supervisor"},
     {"clp.qp.feasibility_tolerance", "no key: it is 1e-10"},
     {"controller.transfer_decay", "no key: it is 0.9"},
     {"controller.disturbance_nominal", "disturbance.nominal"},
