@@ -11,7 +11,9 @@
 #include <sstream>
 
 #include "base/files.hpp"
+#include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "paths.hpp"
 #include "runtime/commissioning/design.hpp"
@@ -249,6 +251,7 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   EXPECT_EQ(some.refuted, 1U);
   EXPECT_TRUE(some.offers_law || some.offers_pi);
   EXPECT_NE(some.pi.find("kp: -"), std::string::npos) << "its sign holds an unstable lag";
+  EXPECT_NE(some.pi.find("setpoint_pole"), std::string::npos) << "its zero would overshoot";
   const std::vector<double>& offered =
       some.offers_law ? some.law_figures.costs : some.pi_figures.costs;
   ASSERT_EQ(offered.size(), some.present_costs.size());
@@ -258,6 +261,31 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   EXPECT_FALSE(none.offers_law || none.offers_pi);
   EXPECT_FALSE(std::isfinite(none.law_figures.tuned) || std::isfinite(none.ratio));
   EXPECT_NE(none.pi.find("kp:"), std::string::npos);
+}
+
+TEST(ProcessModels, TakeTheirNoiseFromTheWatch) {
+  const std::string folder = folderOf("watched", kTankBrief, "tank.yaml", "extends: heated_tank\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const PlantInfo& plant = brief.loop.plant_info;
+  PlantRecord watched(plant);
+  auto engine = seededEngine(3, {});
+  Measurement now;
+  now.input_applied = Vector::Constant(countOf(plant.inputs), 10.0);
+  now.disturbances = Vector::Constant(countOf(plant.disturbances), 10.0);
+  for (std::uint32_t k = 0; k < 250; ++k) {
+    now.header.step = k;
+    now.outputs = Vector::Constant(1, k < 50 ? 1.0 * k : 42.0 + 0.02 * standardNormal(engine));
+    watched.add(now, now.input_applied);
+  }
+  const auto oneStep = [&](Eigen::Index first, double least) {
+    ProcessModels models =
+        lagsOf(brief, ProcessKind::kStable, {2.5, 240.0, 0.0, 0.0, 60.0, false}, {1.1, 0.9});
+    takeNoiseInOperation(watched, first, Vector::Constant(1, least), models);
+    return models.fits[0].one_step;
+  };
+  EXPECT_NEAR(oneStep(50, 0.0), 0.02, 0.004) << "what had not settled is left out";
+  EXPECT_EQ(oneStep(50, 0.04), 0.04);
+  for (const Eigen::Index first : {240, 250, 1000}) EXPECT_EQ(oneStep(first, 0.0), 0.05) << first;
 }
 
 TEST(Design, AsksThePresentControlOfALoopWithoutAnEnd) {

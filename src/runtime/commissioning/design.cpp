@@ -12,6 +12,7 @@
 #include "base/statistics.hpp"
 #include "base/yaml_load.hpp"
 #include "control/pi/tuning.hpp"
+#include "estimation/disturbance_observer.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
@@ -156,28 +157,7 @@ std::string rewritten(const CommissioningBrief& brief, const std::string& what,
 
 struct PiSetting {
   double kp{}, ti_min{};
-  /// A step of the setpoint through 1 / (Ti s + 1), which takes the zero of the PI away: it would
-  /// throw an unstable process far beyond the step (astrom2008).
-  bool filtered{false};
 };
-
-std::string piLoops(const CommissioningBrief& brief, const Outline& o,
-                    const std::vector<PiSetting>& settings) {
-  std::string text = "[";
-  for (std::size_t p = 0; p < o.pairs.size(); ++p)
-    text += std::string(p ? ", " : "") + "{input: " +
-            brief.loop.plant_info.inputs[static_cast<std::size_t>(o.pairs[p].input)].name +
-            ", output: " +
-            brief.loop.plant_info.outputs[static_cast<std::size_t>(o.pairs[p].output)].name +
-            ", kp: " + exactText(settings[p].kp) +
-            ", ki_per_h: " + exactText(settings[p].kp * 60.0 / settings[p].ti_min) +
-            (settings[p].filtered
-                 ? ", setpoint_pole: " + exactText(std::exp(-brief.loop.plant_info.sample_time_s /
-                                                            (60.0 * settings[p].ti_min)))
-                 : "") +
-            ", start: bumpless}";
-  return text + "]";
-}
 
 bool hasPresent(const CommissioningBrief& brief) {
   return brief.closed && !brief.loop.controllerType().needs_model;
@@ -313,12 +293,11 @@ class Designer {
       const double wait = std::max(late + e.second, Ts);
       s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
       s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
-      s.filtered = true;
     } else {
       const Fopdt lag{e.gain, std::max(e.lags(), 0.3 * Ts) / 60.0, late / 60.0};
       const PiTuning t =
           imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
-      s = {t.kp, t.integral_time_min, false};
+      s = {t.kp, t.integral_time_min};
     }
     return s;
   }
@@ -366,15 +345,33 @@ class Designer {
           loop["output"].as<std::string>("") ==
               plant.outputs[static_cast<std::size_t>(pair.output)].name &&
           kp / ki_per_h > 0.0)
-        return {loop["reverse"].as<bool>(false) ? -kp : kp, kp / ki_per_h * 60.0, false};
+        return {loop["reverse"].as<bool>(false) ? -kp : kp, kp / ki_per_h * 60.0};
     }
     return otherwise;
   }
 
+  /// The zero of a PI drives an unstable process far beyond a step of its setpoint: the step is
+  /// filtered with 1 / (Ti s + 1), which takes the zero away (astrom2008).
+  std::string piLoops(const std::vector<PiSetting>& settings) const {
+    const PlantInfo& plant = brief_.loop.plant_info;
+    std::string text = "[";
+    for (Index p = 0; p < loops(); ++p) {
+      const auto at = static_cast<std::size_t>(p);
+      const Pairing& pair = outline_.pairs[at];
+      const PiSetting& s = settings[at];
+      text += std::string(p ? ", " : "") +
+              "{input: " + plant.inputs[static_cast<std::size_t>(pair.input)].name +
+              ", output: " + plant.outputs[static_cast<std::size_t>(pair.output)].name +
+              ", kp: " + exactText(s.kp) + ", ki_per_h: " + exactText(s.kp * 60.0 / s.ti_min);
+      if (elementOf(p).time_constant < 0.0)
+        text += ", setpoint_pole: " + exactText(std::exp(-plant.sample_time_s / (60.0 * s.ti_min)));
+      text += ", start: bumpless}";
+    }
+    return text + "]";
+  }
+
   std::string piText(const Vector& x) const {
-    return rewritten(
-        brief_, "PI",
-        {{"controller", "{type: pi, loops: " + piLoops(brief_, outline_, piOf(x)) + "}"}});
+    return rewritten(brief_, "PI", {{"controller", "{type: pi, loops: " + piLoops(piOf(x)) + "}"}});
   }
 
   // ---- the predictive law
@@ -439,13 +436,12 @@ class Designer {
       comma = ", ";
     }
     c << "}}}";
-    return rewritten(brief_, "law",
-                     {{"model", "{file: '" + model_file_ + "'}"},
-                      {"controller", c.str()},
-                      {"guard", "{fallback: {type: pi, loops: " +
-                                    piLoops(brief_, outline_,
-                                            pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) +
-                                    "}}"}});
+    return rewritten(
+        brief_, "law",
+        {{"model", "{file: '" + model_file_ + "'}"},
+         {"controller", c.str()},
+         {"guard", "{fallback: {type: pi, loops: " +
+                       piLoops(pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) + "}}"}});
   }
 
   // ---- judging

@@ -226,7 +226,8 @@ void takeNoiseInOperation(const PlantRecord& watched, Index first, const Vector&
   const Matrix inputs = watched.inputsAndDisturbances();
   for (std::size_t i = 0; i < models.fits.size(); ++i) {
     Vector output = watched.outputs().col(static_cast<Index>(i));
-    output.head(first).setConstant(std::numeric_limits<double>::quiet_NaN());
+    output.head(std::min(first, output.size()))
+        .setConstant(std::numeric_limits<double>::quiet_NaN());
     const auto noise = noiseBeside(models.fits[i], inputs, output, watched.info().sample_time_s);
     if (!noise) continue;
     models.fits[i].noise = noise->terms;
