@@ -17,10 +17,14 @@ WITH_ROS = "FMBPC_WITH_ROS:BOOL=ON" in (BUILD / "CMakeCache.txt").read_text()
 
 def run(*command, check=True, **variables):
     done = subprocess.run([str(word) for word in command], env={**os.environ, **{k: str(v) for k, v in variables.items()}},
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300, check=False)
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=1800, check=False)
     if check and done.returncode != 0:
         raise AssertionError(f"{command}\n{done.stdout[-3000:]}")
     return done.stdout
+
+
+def build(folder, target="all"):
+    return run("cmake", "--build", folder, "--target", target, "--parallel", os.cpu_count())
 
 
 class ExamplePackage(unittest.TestCase):
@@ -34,7 +38,7 @@ class ExamplePackage(unittest.TestCase):
             f"-DCMAKE_INSTALL_PREFIX={cls.own}", f"-DCATKIN_DEVEL_PREFIX={cls.folder}/devel",
             f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DTWO_TANKS_TEST=ON", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
             "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
-        run("cmake", "--build", cls.folder / "build", "--target", "install")
+        build(cls.folder / "build", "install")
 
     @classmethod
     def tearDownClass(cls):
@@ -145,12 +149,12 @@ class ExamplePackage(unittest.TestCase):
                                               capture_output=True, check=False).returncode)
 
     def test_the_arena_agrees_with_the_publications_of_its_plants(self):
-        build, own = self.folder / "arena_build", self.folder / "arena"
-        run("cmake", "-S", TOP / "examples" / "arena", "-B", build, "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_INSTALL_PREFIX={own}",
-            f"-DCATKIN_DEVEL_PREFIX={build}/devel", f"-DCMAKE_PREFIX_PATH={self.fmbpc}", "-DARENA_TEST=ON",
+        folder, own = self.folder / "arena_build", self.folder / "arena"
+        run("cmake", "-S", TOP / "examples" / "arena", "-B", folder, "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_INSTALL_PREFIX={own}",
+            f"-DCATKIN_DEVEL_PREFIX={folder}/devel", f"-DCMAKE_PREFIX_PATH={self.fmbpc}", "-DARENA_TEST=ON",
             "-DPYTHON_EXECUTABLE=/usr/bin/python3", "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
-        run("cmake", "--build", build, "--target", "install")
-        self.assertIn("100% tests passed", run("cmake", "--build", build, "--target", "test"))
+        build(folder, "install")
+        self.assertIn("100% tests passed", build(folder, "test"))
         where = {"CMAKE_PREFIX_PATH": own, "FMBPC_TOOL": self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", "LD_LIBRARY_PATH": ""}
         self.assertNotIn("BROKEN", run(where["FMBPC_TOOL"], "check", "arena", **where))
         script = own / "lib" / "arena" / "arena"
@@ -162,12 +166,12 @@ class ExamplePackage(unittest.TestCase):
         for kind in ("plant", "controller"):
             name = f"my_{kind}"
             self.tool("new", kind, name, "--out", self.folder)
-            build = self.folder / f"{name}_build"
-            run("cmake", "-S", self.folder / name, "-B", build, f"-DCMAKE_PREFIX_PATH={self.fmbpc}",
-                f"-DCATKIN_DEVEL_PREFIX={build}/devel", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+            folder = self.folder / f"{name}_build"
+            run("cmake", "-S", self.folder / name, "-B", folder, f"-DCMAKE_PREFIX_PATH={self.fmbpc}",
+                f"-DCATKIN_DEVEL_PREFIX={folder}/devel", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
                 "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
-            run("cmake", "--build", build)
-            tested = run("cmake", "-E", "chdir", build, "ctest", "--output-on-failure", CMAKE_PREFIX_PATH="")
+            build(folder)
+            tested = run("cmake", "-E", "chdir", folder, "ctest", "--output-on-failure", CMAKE_PREFIX_PATH="")
             self.assertIn("100% tests passed, 0 tests failed out of 2", tested)
 
     def test_lists_hold_what_it_brings(self):

@@ -55,7 +55,6 @@ class Faults(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.spoil, cls.first_spoilt, cls.reported, cls.shown = None, None, {}, {}
-        cls.dice = random.Random(1)
         cls.measurement = rospy.Publisher("measurement", Measurement, queue_size=100, tcp_nodelay=True)
         cls.info = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
         cls.true_info = rospy.Subscriber("plant_info_true", PlantInfo, cls.info.publish, tcp_nodelay=True)
@@ -76,7 +75,8 @@ class Faults(unittest.TestCase):
 
     @classmethod
     def pass_on(cls, message):
-        message.outputs = [message.outputs[0] + cls.dice.gauss(0.0, 0.05), *message.outputs[1:]]
+        noise = random.Random(message.step).gauss(0.0, 0.05)
+        message.outputs = [message.outputs[0] + noise, *message.outputs[1:]]
         if cls.spoil is not None:
             cls.first_spoilt = cls.first_spoilt or time.monotonic()
             cls.spoil(message)
@@ -127,7 +127,13 @@ class Faults(unittest.TestCase):
         return spoil
 
     def test_01_a_reading_that_is_frozen(self):
-        self.spoilt("signal_frozen", "s", self.put("outputs", 0, 60.5))
+        """At its last value, whatever that is: one far from its own noise has jumped first."""
+        last = []
+
+        def spoil(message):
+            last.append(message.outputs[0])
+            message.outputs = [last[0], *message.outputs[1:]]
+        self.spoilt("signal_frozen", "s", spoil)
 
     def test_02_a_reading_that_is_no_number(self):
         self.spoilt("signal_missing", "s", self.put("outputs", 0, math.nan))
