@@ -62,7 +62,7 @@ CASES = {
     "pi_best": ("asp_case1_pi_x_best", 200, ["sampling.duration_h=40"], "lockstep", 3600),
     "bsm1_sampled_pi": ("bsm1_default_sampled", 240, ["disturbance={}", "sampling.duration_h=4", "report.record_from_h=0"],
                         "lockstep", 3600),
-    "load_supervisor": ("bsm1_supervisor", 60, ["disturbance={}", "sampling.duration_h=5", "report.record_from_h=0"],
+    "load_ahead": ("bsm1_supervisor", 60, ["disturbance={}", "sampling.duration_h=5", "report.record_from_h=0"],
                         "lockstep", 3600),
     "handover": (str(HANDOVER / "tank.yaml"), 1200, [f"candidate.loop={HANDOVER / 'tank_candidate.yaml'}",
                                                      "candidate.automatic=true"], "lockstep", 3600),

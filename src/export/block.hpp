@@ -63,7 +63,6 @@ void buildBlock(const LoopFile& loop, ir::Program& program);
 std::unique_ptr<LawCode> makeLawCode(BlockParts& parts);
 /// nullptr for controllers of other types.
 std::unique_ptr<LawCode> makePiCode(BlockParts& parts);
-std::unique_ptr<LawCode> makeSupervisorCode(BlockParts& parts);
 std::unique_ptr<LawCode> makeFmbpcCode(BlockParts& parts);
 std::unique_ptr<LawCode> makeOptimalCode(BlockParts& parts);
 /// u := inside limits_of_u as InputLimits::clip(), moves counted from `previous`.

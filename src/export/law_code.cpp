@@ -9,7 +9,7 @@ std::unique_ptr<LawCode> makeLawCode(BlockParts& parts) {
   require(!loop.targets.enabled, loop.name + ": targets",
           "targets: false; the target layer is not exported, its law alone would follow other "
           "setpoints");
-  for (const auto make : {&makePiCode, &makeSupervisorCode, &makeFmbpcCode, &makeOptimalCode})
+  for (const auto make : {&makePiCode, &makeFmbpcCode, &makeOptimalCode})
     if (std::unique_ptr<LawCode> code = make(parts)) {
       require(!loop.has_clp || code->optimizer() != nullptr, loop.name + ": clp",
               "clp: false; the law predicts nothing for the constraint optimizer");
@@ -17,7 +17,7 @@ std::unique_ptr<LawCode> makeLawCode(BlockParts& parts) {
     }
   const std::string& type = loop.controllerType().name;
   require(false, loop.name + ": controller.type",
-          "pi, load_supervisor, fmbpc or fuzzy_optimal; " + type +
+          "pi, fmbpc or fuzzy_optimal; " + type +
               " is not exported: its work per sample is not fixed, or it learns while it runs");
   return nullptr;
 }

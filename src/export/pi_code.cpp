@@ -152,7 +152,10 @@ class PiCode final : public LawCode {
     const PiFeedforward& f = loop(i).terms.feedforward[which];
     const Value slow = lagged_[k(i)][static_cast<int>(which)];
     const double share = f.lag_h > 0.0 ? -std::expm1(-hours_ / f.lag_h) : 1.0;
-    p_.set(w_, b_.d[f.disturbance] - f.nominal);
+    if (f.times < 0)
+      p_.set(w_, b_.d[f.disturbance] - f.nominal);
+    else
+      p_.set(w_, b_.d[f.disturbance] * b_.d[f.times] - f.nominal);
     p_.when(fresh_[k(i)], [&] { p_.set(slow, w_); });
     p_.set(slow, slow + share * (w_ - slow));
     p_.set(v_, v_ + f.gain * slow);
@@ -203,9 +206,7 @@ class PiCode final : public LawCode {
       p_.when((unclipped_[i] > t_ && v_ > 0.0) || (unclipped_[i] < w_ && v_ < 0.0),
               [&] { p_.set(v_, 0.0); });
     } else if (l.anti_windup == AntiWindup::kTracking) {
-      const double rate = std::abs(l.ki_per_h) * hours_;
-      const double share = rate < std::abs(l.kp) ? rate / std::abs(l.kp) : 1.0;
-      p_.set(v_, v_ + (b_.u[l.input] - unclipped_[i]) * share);
+      p_.set(v_, v_ + (b_.u[l.input] - unclipped_[i]) * trackingShare(l, hours_));
     }
     p_.set(v_, integral_[i] + v_);
     p_.when(ir::sane(v_), [&] { p_.set(integral_[i], v_); });

@@ -47,6 +47,7 @@ class Fitter {
     mean_ = Vector::Zero(inputs.cols());
     u_ = inputs;
     for (Index j = 0; j < u_.cols(); ++j) {
+      u_(0, j) = firstKnown(u_.col(j));
       for (Index k = 1; k < N_; ++k)
         if (!std::isfinite(u_(k, j))) u_(k, j) = u_(k - 1, j);
       mean_[j] = u_.col(j).mean();
@@ -56,7 +57,12 @@ class Fitter {
     longest_ = params.longest_dead_time_s > 0.0 ? params.longest_dead_time_s / Ts
                                                 : 0.1 * static_cast<double>(N_);
     longest_ = std::min(longest_, 0.3 * static_cast<double>(N_));
-    rows_ = usable();
+    // A term of the noise costs all rows behind a gap: fewer where most rows would be lost.
+    const Index known = y_.array().isFinite().count();
+    for (rows_ = usable();
+         params_.most_noise_terms > 1 && 2 * static_cast<Index>(rows_.size()) < known;
+         rows_ = usable())
+      params_.most_noise_terms /= 2;
   }
 
   ProcessFit best() {
@@ -165,6 +171,13 @@ class Fitter {
     for (Index i = 0; i < noise.size(); ++i)
       e.tail(w.size() - 1 - i) -= noise[i] * w.head(w.size() - 1 - i);
     return e;
+  }
+
+  /// Its first reading stands for those before it; 0: there is none.
+  static double firstKnown(const Eigen::Ref<const Vector>& column) {
+    for (const double value : column)
+      if (std::isfinite(value)) return value;
+    return 0.0;
   }
 
   /// Where all of the errors are known: the same rows whatever the noise terms, so that costs of
@@ -648,7 +661,9 @@ class Fitter {
     Candidate next = c;
     next.shapes[j] = kNone;
     next.elements[j].gain = 0.0;
-    if (std::all_of(next.shapes.begin(), next.shapes.end(), [](Shape s) { return s == kNone; }))
+    // While a test goes on its first element is what is known.
+    if (params_.passing &&
+        std::all_of(next.shapes.begin(), next.shapes.end(), [](Shape s) { return s == kNone; }))
       return value;
     if (!descend(next)) return value;
     const double without = criterion(next);
@@ -849,6 +864,34 @@ class Fitter {
   std::vector<Index> rows_;
 };
 
+/// Powers of two near the deviations of what is fitted, by which it is divided: what keeps the
+/// equations of a fit regular does not depend on units, and every other number keeps its bits.
+struct Scales {
+  double y{1.0};
+  Vector u;
+
+  Scales(const Matrix& inputs, const Vector& output) : y(scaleOf(output)), u(inputs.cols()) {
+    for (Index j = 0; j < u.size(); ++j) u[j] = scaleOf(inputs.col(j));
+  }
+  double gain(std::size_t j) const { return y / u[static_cast<Index>(j)]; }
+  Matrix inputs(const Matrix& all) const { return all * u.cwiseInverse().asDiagonal(); }
+  Vector output(const Vector& all) const { return all / y; }
+
+ private:
+  static double scaleOf(const Eigen::Ref<const Vector>& column) {
+    double sum = 0.0, square = 0.0, n = 0.0, shift = 0.0;
+    for (const double value : column) {
+      if (!std::isfinite(value)) continue;
+      if (n == 0.0) shift = value;
+      sum += value - shift;
+      square += (value - shift) * (value - shift);
+      n += 1.0;
+    }
+    const double variance = n > 0.0 ? (square - sum * sum / n) / n : 0.0;
+    return variance > 0.0 ? std::exp2(std::round(0.5 * std::log2(variance))) : 1.0;
+  }
+};
+
 }  // namespace
 
 void ProcessFitParams::validate() const {
@@ -865,13 +908,24 @@ ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_
           "a row of inputs per output");
   require(output.size() >= kFewestRows, "record", "30 rows or more");
   require(sample_time_s > 0.0, "sample time", "a time > 0");
-  require(inputs.row(0).allFinite(), "record", "inputs that are known in the first row");
   bool moves = false;
-  for (Index j = 0; j < inputs.cols() && !moves; ++j)
-    for (Index k = 1; k < inputs.rows() && !moves; ++k)
-      moves = inputs(k, j) != inputs(0, j) && std::isfinite(inputs(k, j));
+  for (Index j = 0; j < inputs.cols() && !moves; ++j) {
+    const Eigen::Array<bool, Eigen::Dynamic, 1> known = inputs.col(j).array().isFinite();
+    moves = known.any() && known.select(inputs.col(j).array(), kInfinity).minCoeff() <
+                               known.select(inputs.col(j).array(), -kInfinity).maxCoeff();
+  }
   require(moves, "record", "an input that moves");
-  return Fitter(inputs, output, sample_time_s, params).best();
+  const Scales scales(inputs, output);
+  ProcessFit fit =
+      Fitter(scales.inputs(inputs), scales.output(output), sample_time_s, params).best();
+  for (std::size_t j = 0; j < fit.elements.size(); ++j) {
+    fit.elements[j].element.gain *= scales.gain(j);
+    fit.elements[j].gain_bound *= scales.gain(j);
+    for (auto& member : fit.ensemble) member[j].gain *= scales.gain(j);
+  }
+  for (double* value : {&fit.one_step, &fit.free_run, &fit.output}) *value *= scales.y;
+  fit.input.array() *= scales.u.array();
+  return fit;
 }
 
 std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit, const Matrix& inputs,
@@ -880,8 +934,15 @@ std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit, const Matrix& inp
       inputs.rows() == output.size() && inputs.cols() == static_cast<Index>(fit.elements.size()),
       "record", "a row of inputs per output, and the columns of the fit");
   require(sample_time_s > 0.0, "sample time", "a time > 0");
-  if (output.size() < kFewestRows || !inputs.row(0).allFinite()) return std::nullopt;
-  return Fitter(inputs, output, sample_time_s, {}).noiseBeside(fit);
+  if (output.size() < kFewestRows) return std::nullopt;
+  const Scales scales(inputs, output);
+  ProcessFit same = fit;
+  for (std::size_t j = 0; j < same.elements.size(); ++j)
+    same.elements[j].element.gain /= scales.gain(j);
+  auto noise =
+      Fitter(scales.inputs(inputs), scales.output(output), sample_time_s, {}).noiseBeside(same);
+  if (noise) noise->one_step *= scales.y;
+  return noise;
 }
 
 }  // namespace fpc

@@ -48,7 +48,8 @@ struct ProcessFit {
 };
 
 /// Row k of `inputs` (rows x n) acts from then on, `output` is measured then; NaN where missing
-/// (inputs are held over it). The process has rested with the inputs of the first row.
+/// (inputs are held over it, and before their first reading have its value). The process has rested
+/// with the inputs of the first row.
 /// @throws InputError for fewer than 30 rows, sizes, or inputs none of which moves.
 ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_time_s,
                       const ProcessFitParams& params = {});

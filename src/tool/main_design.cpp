@@ -38,7 +38,7 @@ void addCommission(CLI::App& app, fpc::tool::CommissionArguments& a) {
   commission->add_option("--threads", a.threads, "0: all cores")->capture_default_str();
   commission->add_flag("--json", a.json, "print one JSON object and nothing else");
   commission->add_flag("--no-plot", a.no_plot, "no test.png, no model.png");
-  commission->footer("Example: fmbpc commission heated_tank_brief.yaml --until watch\n");
+  commission->footer("Example: fmbpc commission examples/commission/reactor.yaml --until watch\n");
   commission->callback([&a] { asked_for = [&a] { return fpc::tool::commission(a); }; });
 }
 

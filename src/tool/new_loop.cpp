@@ -230,8 +230,9 @@ class LoopWriter {
     return "# Written by `fmbpc new loop` from " + file_ +
            ": numbers are of the model and its record, see them as a start.\n"
            "#   fmbpc run " +
-           name_ + (plant_type == "model" ? "" : " --on-model") + "\n#   fmbpc stability " + name_ +
-           "\n# All keys, units and defaults: docs/loop_file.md\ntitle: " + name_ + "\n\n";
+           name_ + (plant_type == "model" ? ".yaml" : ".yaml --on-model") +
+           "\n#   fmbpc stability " + name_ +
+           ".yaml\n# All keys, units and defaults: docs/loop_file.md\ntitle: " + name_ + "\n\n";
   }
 
   std::string signalList(const char* key, const std::vector<SignalInfo>& signals,

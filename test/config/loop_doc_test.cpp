@@ -152,13 +152,14 @@ std::set<std::string> readerKeys() {
   for (const auto& type : controllerNames())
     for (const auto& loop : loopsOfType(type))
       texts.push_back(resolveLoop(loop, withoutRecords(loop)));
-  std::set<std::string> keys, sections;
-  for (const auto& text : texts)
-    for (const auto& path : asked(text)) {
-      keys.insert(general(path));
-      for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))
-        sections.insert(general(path.substr(0, cut)));
-    }
+  std::set<std::string> paths, parents, keys, sections;
+  for (const auto& text : texts) paths.merge(asked(text));
+  for (const auto& path : paths) {
+    keys.insert(general(path));
+    for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))
+      parents.insert(path.substr(0, cut));
+  }
+  for (const auto& parent : parents) sections.insert(general(parent));
   for (const auto& section : sections) {  // a row only if a list, of mappings or names
     keys.erase(section);
     if (section.size() > 2 && section.substr(section.size() - 2) == "[]")

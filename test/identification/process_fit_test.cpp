@@ -192,6 +192,52 @@ TEST(ProcessFit, MissingRowsAreLeftOut) {
   EXPECT_NEAR(fitProcess(d.u, d.y, 1.0).elements[0].element.gain, 2.0, 0.02);
 }
 
+// An analyser that answers three times of four, and a disturbance that is unknown at first.
+TEST(ProcessFit, ManyMissingRowsAndAFirstOneCostRowsAndNotTheFit) {
+  const ProcessElement e = lag(2.0, 12.0, 3.0);
+  Data d = record(e, 0.0, 0.0, 1.0, {0.01}, 400, 7);
+  auto engine = seededEngine(3, {});
+  for (double& y : d.y)
+    if (uniform(engine) < 0.25) y = std::nan("");
+  Matrix u(400, 2);
+  u << d.u.col(0), Vector::Ones(400);
+  u.col(1).head(3).setConstant(std::nan(""));
+  const ProcessFit fit = fitProcess(u, d.y, 1.0);
+  EXPECT_NEAR(fit.elements[0].element.gain, 2.0, 0.02);
+  EXPECT_GT(fit.rows, 100);
+  EXPECT_FALSE(fit.elements[1].seen);
+}
+
+// Mole fractions in 1e-9 and an input in 1e6 W: the same process in other units.
+TEST(ProcessFit, DoesNotDependOnUnits) {
+  const ProcessElement e = lag(2.0, 15.0, 4.3, 3.0);
+  const Data d = record(e, 0.5, 0.06, 0.5, {0.1, 0.02}, 500, 9);
+  const ProcessFit here = fitProcess(d.u, d.y, 1.0);
+  const ProcessFit there = fitProcess(1e6 * d.u, 1e-9 * d.y, 1.0);
+  const ProcessElement &a = here.elements[0].element, &b = there.elements[0].element;
+  EXPECT_NEAR(b.gain, 1e-15 * a.gain, 1e-19);
+  EXPECT_NEAR(b.lags(), a.lags(), 1e-3 * a.lags());
+  EXPECT_NEAR(b.dead_time, a.dead_time, 1e-3);
+  EXPECT_NEAR(there.one_step, 1e-9 * here.one_step, 1e-13);
+  EXPECT_NEAR(there.output, 1e-9 * here.output, 1e-12);
+  EXPECT_NEAR(there.elements[0].gain_bound, 1e-15 * here.elements[0].gain_bound, 1e-18);
+  ASSERT_EQ(there.noise.size(), here.noise.size());
+  EXPECT_NEAR((there.noise - here.noise).norm(), 0.0, 1e-3);
+  const auto calm = noiseBeside(there, 1e6 * d.u, 1e-9 * d.y, 1.0);
+  ASSERT_TRUE(calm.has_value());
+  EXPECT_NEAR(calm->one_step, there.one_step, 0.05 * there.one_step);
+}
+
+// An output that nothing moves has no element, rather than one of its noise.
+TEST(ProcessFit, AnOutputThatNothingMovesHasNoElement) {
+  int none = 0;
+  for (int seed = 0; seed < 10; ++seed) {
+    const Data d = record(lag(0.0, 5.0, 0.0), 0.0, 0.0, 1.0, {0.1}, 400, 20 + seed);
+    none += fitProcess(d.u, d.y, 1.0).elements[0].seen ? 0 : 1;
+  }
+  EXPECT_GE(none, 8);
+}
+
 TEST(ProcessFit, RefusesWhatCannotBeFitted) {
   EXPECT_THROW(fitProcess(Matrix::Zero(100, 1), Vector::Zero(100), 1.0), InputError);
   EXPECT_THROW(fitProcess(Matrix::Random(20, 1), Vector::Zero(20), 1.0), InputError);

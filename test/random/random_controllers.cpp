@@ -52,20 +52,15 @@ std::string derivative(Dice& dice, const RandomFrame& frame, double kp) {
   return text;
 }
 
-/// Of the plants that have a load to be fed forward.
-std::string loadSupervisor(Dice& dice, RandomFrame& frame) {
-  const Quantity& u = frame.plant.inputs.front();
-  double kp = spanOf(u) / spanOf(frame.outputs.front()) * dice.scale(0.05, 3.0);
-  if (dice.chance(0.3)) kp = -kp;
-  const auto hours = [&] { return Dice::rounded(frame.hours(dice.scale(1.0, 200.0))); };
-  std::string text = "  input: " + u.name + "\n  output: " + frame.outputs.front().name +
-                     "\n  kp: " + Dice::rounded(kp) +
-                     "\n  ki_per_h: " + Dice::rounded(kp / frame.hours(dice.scale(1.0, 200.0))) +
-                     "\n  load: {concentration: S_NH_in, flow: Q_in, gain: " +
-                     Dice::rounded(spanOf(u) * dice.between(-1.0, 2.0)) + "}\n";
-  if (dice.chance(0.5)) text += "  tracking_time_h: " + hours() + "\n";
-  if (dice.chance(0.3)) text += "  integral_limit: " + Dice::rounded(spanOf(u)) + "\n";
-  return text;
+/// Of plants that have a load to be fed forward.
+std::string loadAhead(Dice& dice, const RandomFrame& frame, const Quantity& u) {
+  const auto has = [&](const char* name) {
+    const auto& all = frame.plant.disturbances;
+    return std::any_of(all.begin(), all.end(), [&](const auto& d) { return d.name == name; });
+  };
+  if (!has("S_NH_in") || !has("Q_in") || dice.chance(0.3)) return "";
+  return ", feedforward: [{disturbance: S_NH_in, times: Q_in, gain: " +
+         Dice::rounded(spanOf(u) * dice.between(-1.0, 2.0) / 6e5) + "}]";
 }
 
 std::string pi(Dice& dice, RandomFrame& frame) {
@@ -80,14 +75,17 @@ std::string pi(Dice& dice, RandomFrame& frame) {
     text += "    - {input: " + u.name + ", output: " + y.name + ", kp: " + Dice::rounded(kp);
     if (dice.chance(0.8)) text += ", ki_per_h: " + Dice::rounded(ki);
     if (dice.chance(0.3)) text += ", reverse: true";
-    text += ", anti_windup: " + dice.pick<std::string>({"none", "clamp", "tracking"}) +
+    const auto anti_windup = dice.pick<std::string>({"none", "clamp", "tracking"});
+    text += ", anti_windup: " + anti_windup +
             ", start: " + dice.pick<std::string>({"bias", "bumpless"});
+    if (anti_windup == "tracking" && dice.chance(0.5))
+      text += ", tracking_time_h: " + Dice::rounded(frame.hours(dice.scale(1.0, 200.0)));
     if (dice.chance(0.2))
       text += ", gain_schedule: [{output: " + exactText(workingRange(y).first) +
               ", gain: " + dice.number(0.2, 2.0) +
               "}, {output: " + exactText(workingRange(y).second) +
               ", gain: " + dice.number(0.2, 2.0) + "}]";
-    text += derivative(dice, frame, kp) + "}\n";
+    text += derivative(dice, frame, kp) + loadAhead(dice, frame, u) + "}\n";
   }
   return text;
 }
@@ -189,7 +187,6 @@ const std::map<std::string, Maker>& makers() {
                                                 {"nmpc", nmpc},
                                                 {"swarm_mpc", swarm},
                                                 {"hybrid_mpc", hybrid},
-                                                {"load_supervisor", loadSupervisor},
                                                 {"adaptive_pi", adaptivePi},
                                                 {"fuzzy_optimal", fuzzyOptimal}};
   return all;

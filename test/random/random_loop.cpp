@@ -30,7 +30,7 @@ std::vector<Modelled> modelledPlants() {
           {"batch_reactor", "batch_fuzzy", {"T", "Tw"}, {}, {"hybrid_mpc"}},
           {"bsm1_air", "bsm1_air", {"S_NH5"}, {"S_NH_in", "Q_in"}, {"fmbpc", "swarm_mpc"}},
           {"bsm1_air", "bsm1_nitrate", {"S_NH5", "S_NO2", "S_NO5"}, {"S_NH_in", "Q_in"}, {"fmbpc"}},
-          {"bsm1_air", "", {"S_NH5"}, {"S_NH_in", "Q_in"}, {"load_supervisor"}},
+          {"bsm1_air", "", {"S_NH5"}, {"S_NH_in", "Q_in"}, {"pi"}},
           {"distillation_column", "", {"y_D", "x_B"}, {}, {"adaptive_pi"}}};
 }
 

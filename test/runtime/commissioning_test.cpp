@@ -101,8 +101,8 @@ TEST(CommissioningBrief, AsksByNameForWhatIsMissing) {
 }
 
 TEST(CommissioningBrief, RefusesUnknownSignalsAndSetpointsBeyondTheLimits) {
-  for (const char* bad :
-       {"hold: {T: 60}\n", "hold: {X: 42}\n", "hold: {T: 42}\nzone: {T: [50, 40]}\n"}) {
+  for (const char* bad : {"hold: {T: 60}\n", "hold: {X: 42}\n",
+                          "hold: {T: 42}\nzone: {T: [50, 40]}\n", "zone: {T: [40, 50]}\n"}) {
     std::string brief = kTankBrief;
     brief.replace(brief.find("hold: {T: 42}\n"), 14, bad);
     const std::string folder = folderOf("brief", brief, "tank.yaml", kTank);
@@ -311,6 +311,35 @@ ProcessModels pairOf(const std::vector<double>& last) {
   return models;
 }
 
+/// Six inputs with two lags of some 50 samples each: twelve poles have no common denominator that
+/// double precision holds; the model keeps the gains all the same.
+TEST(ProcessModels, OfManySlowLagsKeepTheirGains) {
+  ProcessFit fit;
+  TsModel names;
+  names.name = "many";
+  names.sample_time_s = 1.0;
+  names.outputs = {{"y", "", -100.0, 100.0}};
+  for (int j = 0; j < 6; ++j) {
+    names.inputs.push_back({"u" + std::to_string(j), "", -1.0, 1.0});
+    fit.elements.push_back({{1.0 + j, 40.0 + 4.0 * j, 30.0 + j, 0.0, 3.0}, true});
+  }
+  fit.output = 1.0;
+  fit.input = Vector::Zero(6);
+  const ProcessModels models = fpc::modelsOf(names, {fit}, 0, {false});
+  const OutputModel& made = models.model.submodels.front();
+  const Vector& c = made.rules.front().coefficients;
+  double own = 1.0;
+  Vector effect = Vector::Zero(6);
+  for (std::size_t k = 0; k < made.regressors.size(); ++k) {
+    const Regressor& r = made.regressors[k];
+    if (r.kind == SignalKind::kOutput)
+      own -= c[static_cast<Eigen::Index>(k)];
+    else
+      effect[r.index] += c[static_cast<Eigen::Index>(k)];
+  }
+  for (int j = 0; j < 6; ++j) EXPECT_NEAR(effect[j] / own, 1.0 + j, 0.01 * (1.0 + j)) << j;
+}
+
 TEST(WeakDirections, AreCertainWhereTheWholeEnsembleHasTheSameSign) {
   const Vector one = Vector::Ones(2);
   const auto certain = [&](const std::vector<double>& last) {
@@ -354,6 +383,8 @@ TEST_F(DesignOf, AnOpenTankKeepsThePeakThatIsAskedForOrOffersNothing) {
   }
   EXPECT_TRUE(stable.offers_law || stable.offers_pi);
   EXPECT_FALSE(never.offers_law || never.offers_pi);
+  EXPECT_NE(stable.law.find("fallback"), std::string::npos);
+  EXPECT_EQ(never.law.find("fallback"), std::string::npos) << "a PI that is not fit is none";
 }
 
 /// The noise of the fit acts in the runs that are judged.

@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(Types, RetuneContract, ::testing::ValuesIn(typesWithSet
 
 TEST(RetuneRegistry, TheTypesThatCanBeRetunedAreKnown) {
   const std::vector<std::string> types = typesWithSettings();
-  for (const char* name : {"fmbpc", "fuzzy_optimal", "load_supervisor", "pi"})
+  for (const char* name : {"fmbpc", "fuzzy_optimal", "pi"})
     EXPECT_NE(std::find(types.begin(), types.end(), name), types.end()) << name;
 }
 

@@ -56,14 +56,14 @@ TEST_F(LoopsTool, TenToBeginWithComeFirstInTheirOrder) {
 }
 
 TEST_F(LoopsTool, WordsFindThemAndTheTableSaysWhatLacks) {
-  const std::string printed = loopsWithoutRecords("load_supervisor").printed;
+  const std::string printed = loopsWithoutRecords("bsm1_supervisor").printed;
   std::istringstream lines(printed);
   std::string found;
   for (std::string line; std::getline(lines, line);) {
     EXPECT_LT(line.size(), 160U) << line;
     if (line.rfind("bsm1_supervisor ", 0) == 0) found = line;
   }
-  for (const char* words : {"bsm1_air", "load_supervisor", "dry weather (needs FMBPC_DATA)"})
+  for (const char* words : {"bsm1_air", "pi", "dry weather (needs FMBPC_DATA)"})
     EXPECT_NE(found.find(words), std::string::npos) << printed;
 }
 

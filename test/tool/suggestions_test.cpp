@@ -25,7 +25,7 @@ TEST(Suggestions, CapitalsPartsAndSlips) {
   expectAnswer("study Cstr_mismatch", "near: cstr_mismatch");
   expectAnswer("model FM_1", "near: fm_1");
   expectAnswer("identify x.csv ASP_D", "asp_d");
-  expectAnswer("loops load_supervisr", "near: load_supervisor");
+  expectAnswer("loops adaptiv_pi", "near: adaptive_pi");
 }
 
 TEST(Suggestions, HelpOfACommandThatIsNone) {

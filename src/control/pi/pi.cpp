@@ -42,11 +42,20 @@ void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, 
   require(std::isfinite(loop.kp), key + "kp", "a finite number");
   require(std::isfinite(loop.ki_per_h), key + "ki_per_h", "a finite number");
   require(std::isfinite(loop.bias), key + "bias", "a finite number");
+  require(std::isfinite(loop.tracking_time_h) && loop.tracking_time_h >= 0.0,
+          key + "tracking_time_h", "a number >= 0");
   validateSchedule(loop.gain_schedule, key + "gain_schedule");
   loop.terms.validate(key, n_d);
 }
 
 }  // namespace
+
+double trackingShare(const PiLoop& loop, double sample_time_h) {
+  const double parts = loop.tracking_time_h > 0.0 ? loop.tracking_time_h : std::abs(loop.kp),
+               rate = loop.tracking_time_h > 0.0 ? sample_time_h
+                                                 : std::abs(loop.ki_per_h) * sample_time_h;
+  return rate < parts ? rate / parts : 1.0;
+}
 
 void PiParams::validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d) const {
   require(!loops.empty(), "controller.loops", "at least one loop");
@@ -140,10 +149,7 @@ void PiController::integrate(const PiLoop& loop, const Measurement& now, double 
     const bool below = state.unclipped < insideBounds(limits_, loop.input, before - move);
     if ((above && change > 0.0) || (below && change < 0.0)) change = 0.0;
   } else if (loop.anti_windup == AntiWindup::kTracking) {
-    // dt / Tt with Tt = kp / ki; without a proportional part the clipped part comes back at once
-    const double rate = std::abs(loop.ki_per_h) * sample_time_h_;
-    change +=
-        (sent - state.unclipped) * (rate < std::abs(loop.kp) ? rate / std::abs(loop.kp) : 1.0);
+    change += (sent - state.unclipped) * trackingShare(loop, sample_time_h_);
   }
   const double next = state.integral + change;
   if (std::isfinite(next)) state.integral = next;

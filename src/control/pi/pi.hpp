@@ -40,11 +40,16 @@ struct PiLoop {
   double bias{};
   bool reverse{false};  ///< e = y - setpoint
   AntiWindup anti_windup{AntiWindup::kClamp};
+  double tracking_time_h{};  ///< of `tracking`; 0: kp / ki
   PiStart start{PiStart::kBias};
   /// g(y): outputs increasing, linear between points, held outside; empty: 1.
   std::vector<GainPoint> gain_schedule;
   PiTerms terms;
 };
+
+/// dt / Tt: share of the clipped part that comes back in a sample, at most 1 (no proportional
+/// part).
+double trackingShare(const PiLoop& loop, double sample_time_h);
 
 struct PiParams {
   std::vector<PiLoop> loops;
@@ -60,7 +65,8 @@ struct PiParams {
 /// integral, or without one (ki = 0) a bias that decays by a tenth per sample, makes the first u
 /// equal input_applied.
 /// Anti-windup looks at bounds and move limit: `clamp` does not integrate while u is beyond them
-/// and the error pushes it further; `tracking` feeds the clipped part back with the time kp / ki.
+/// and the error pushes it further; `tracking` feeds the clipped part back with its time, or with
+/// kp / ki.
 class PiController final : public Controller {
  public:
   /// @throws InputError naming the field.

@@ -24,6 +24,10 @@ double valueOf(const std::vector<CurvePoint>& curve, double at) {
   return before.value + (at - before.at) / (after->at - before.at) * (after->value - before.value);
 }
 
+double PiFeedforward::valueOf(const Vector& disturbances) const {
+  return disturbances[disturbance] * (times < 0 ? 1.0 : disturbances[times]);
+}
+
 bool PiTerms::any() const {
   return kd_h != 0.0 || preview_h > 0.0 || setpoint_pole > 0.0 || setpoint_lead_h != 0.0 ||
          !static_input.empty() || !feedforward.empty();
@@ -46,6 +50,7 @@ void PiTerms::validate(const std::string& key, Eigen::Index n_d) const {
     const std::string where = key + "feedforward[" + std::to_string(i) + "].";
     require(f.disturbance >= 0 && f.disturbance < n_d, where + "disturbance",
             "a measured disturbance");
+    require(f.times >= -1 && f.times < n_d, where + "times", "a measured disturbance");
     require(std::isfinite(f.gain), where + "gain", "a finite number");
     require(std::isfinite(f.nominal), where + "nominal", "a finite number");
     requireNotNegative(f.lag_h, where + "lag_h");
@@ -93,7 +98,7 @@ double PiTermState::feedforward(const Measurement& now) {
   double sum = 0.0;
   for (std::size_t i = 0; i < terms_.feedforward.size(); ++i) {
     const PiFeedforward& f = terms_.feedforward[i];
-    const double d = now.disturbances[f.disturbance] - f.nominal;
+    const double d = f.valueOf(now.disturbances) - f.nominal;
     double& slow = lagged_[static_cast<Eigen::Index>(i)];
     if (fresh_) slow = d;
     slow += (f.lag_h > 0.0 ? -std::expm1(-sample_time_h_ / f.lag_h) : 1.0) * (d - slow);

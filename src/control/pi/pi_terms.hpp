@@ -10,12 +10,15 @@
 
 namespace fpc {
 
-/// u += gain / (1 + lag s) (d - nominal), of a measured disturbance.
+/// u += gain / (1 + lag s) (d - nominal), of a measured disturbance or the product of two (a load:
+/// concentration times flow).
 struct PiFeedforward {
   int disturbance{};  ///< index into the measured ones
-  double gain{};      ///< input per unit of the disturbance
+  double gain{};      ///< input per unit of the disturbance, or of the product
   double nominal{};   ///< where it adds nothing
   double lag_h{};
+  int times{-1};  ///< index of the other factor; -1: none
+  double valueOf(const Vector& disturbances) const;
 };
 
 /// A point of a curve, linear between points, held outside.

@@ -29,6 +29,9 @@ PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
   item.number("bias", pi.bias, kFinite);
   item.boolean("reverse", pi.reverse);
   readOption(item, "anti_windup", pi.anti_windup);
+  item.number("tracking_time_h", pi.tracking_time_h, kFinitePositive);
+  if (item.has("tracking_time_h") && pi.anti_windup != AntiWindup::kTracking)
+    item.fail("tracking_time_h", "anti_windup: tracking beside it");
   readOption(item, "start", pi.start);
   pi.gain_schedule = readSchedule(item);
   readPiTerms(item, pi.terms, loop);
@@ -66,7 +69,8 @@ SignalUse usedByPi(const PiParams& params, const ControllerContext& loop) {
     use.followed.push_back(control.output);
     moved.push_back(control.input);
     for (const PiFeedforward& term : control.terms.feedforward)
-      need_at(n_y + static_cast<std::size_t>(term.disturbance));
+      for (const int index : {term.disturbance, term.times})
+        if (index >= 0) need_at(n_y + static_cast<std::size_t>(index));
   }
   use.moved = theseInputs(loop, moved);
   return use;

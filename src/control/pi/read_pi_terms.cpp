@@ -9,9 +9,10 @@ std::vector<PiFeedforward> readFeedforward(YamlSection& loop, const ControllerCo
   for (auto& item : loop.list("feedforward")) {
     PiFeedforward one;
     one.disturbance = indexByName(item, "disturbance", context.disturbances());
+    if (item.has("times")) one.times = indexByName(item, "times", context.disturbances());
     need(item, "gain", "a number");
     item.number("gain", one.gain, kFinite);
-    one.nominal = context.disturbance_nominal[one.disturbance];
+    one.nominal = one.valueOf(context.disturbance_nominal);
     item.number("lag_h", one.lag_h, kFiniteNotNegative);
     item.finish();
     all.push_back(one);

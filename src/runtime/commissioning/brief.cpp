@@ -1,5 +1,6 @@
 #include "runtime/commissioning/brief.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -121,7 +122,8 @@ CommissioningBrief readBrief(const std::string& file, const LoopFile* running) {
   b.move = b.loop.simulation.actuator.limits.move;
   readValues(section, "moves", u, b.move, kFinitePositive);
   requireAll(section, "moves", u, b.move, "the largest move per sample");
-  b.move = b.move.cwiseMin(b.loop.simulation.actuator.limits.move);
+  const InputLimits& inputs = b.loop.simulation.actuator.limits;  // a move beyond a range is none
+  b.move = b.move.cwiseMin(inputs.move).cwiseMin(inputs.upper - inputs.lower);
   b.hold = b.loop.setpoint.initial;
   Vector asked = Vector::Constant(n_y, kNaN);
   readValues(section, "hold", y, asked, kFinite);
@@ -141,6 +143,8 @@ CommissioningBrief readBrief(const std::string& file, const LoopFile* running) {
     const bool zone = std::isfinite(b.zone_lower[i]) || std::isfinite(b.zone_upper[i]);
     b.held.push_back(!zone && (b.hold_asked.empty() || std::isfinite(asked[i])));
   }
+  if (std::none_of(b.held.begin(), b.held.end(), [](bool held) { return held; }))
+    section.fail("zone", "an output that is to be held, without a zone");
   need(section, "plant_time_h", "the hours of plant time that watching and testing may use");
   section.number("plant_time_h", b.plant_time_h, Range::positive());
   if (b.samples() < kFewestSamples)

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <sstream>
 
@@ -29,6 +30,7 @@ constexpr double kStepRoom = 0.3;    // of the distance to a limit: steps of the
 constexpr double kStepReach = 0.5;   // of what the strongest input can do
 constexpr double kLoadReach = 0.1;   // of what the strongest input can do: loads
 constexpr double kLoadRoom = 0.5;    // of the distance to a limit, that a load may shift an output
+constexpr double kSeen = 0.2;        // of the record: what an integrator is seen to do
 constexpr double kViolation = 10.0;  // cost of all samples beyond the limits
 constexpr double kFailed = 1e3;      // cost of a run that fails
 constexpr double kCalm = 3.0;        // settling times of one stretch of the scenario
@@ -70,6 +72,27 @@ double rangeOf(const InputLimits& limits, Index j) {
   return std::isfinite(range) ? range : 100.0 * limits.move[j];
 }
 
+/// Kuhn's step to a matching with one more pair; false: there is none.
+bool giveInput(const Matrix& strength, Index output, std::vector<bool>& tried,
+               std::vector<Pairing>& pairs) {
+  for (Index j = 0; j < strength.cols(); ++j) {
+    if (!(strength(output, j) > 0.0) || tried[static_cast<std::size_t>(j)]) continue;
+    tried[static_cast<std::size_t>(j)] = true;
+    const auto owner =
+        std::find_if(pairs.begin(), pairs.end(), [&](const Pairing& p) { return p.input == j; });
+    if (owner == pairs.end()) {
+      pairs.push_back({j, output});
+      return true;
+    }
+    const Index other = owner->output;
+    const auto at = owner - pairs.begin();
+    if (!giveInput(strength, other, tried, pairs)) continue;
+    pairs[static_cast<std::size_t>(at)] = {j, output};
+    return true;
+  }
+  return false;
+}
+
 /// Inputs and outputs by relative gains near 1 (bristol1966) among those with an effect, else by
 /// size; outputs that are held first.
 std::vector<Pairing> pairsOf(const CommissioningBrief& brief, const Matrix& scaled) {
@@ -88,12 +111,41 @@ std::vector<Pairing> pairsOf(const CommissioningBrief& brief, const Matrix& scal
     if (!brief.held[static_cast<std::size_t>(i)]) strength.row(i).setZero();
   std::vector<Pairing> pairs;
   Pairing next{};
-  while (strength.size() > 0 && strength.maxCoeff(&next.output, &next.input) > 0.0) {
+  Matrix left = strength;
+  while (left.size() > 0 && left.maxCoeff(&next.output, &next.input) > 0.0) {
     pairs.push_back(next);
-    strength.row(next.output).setZero();
-    strength.col(next.input).setZero();
+    left.row(next.output).setZero();
+    left.col(next.input).setZero();
+  }
+  // An output that got none may take the input of one that has another.
+  for (Index i = 0; i < strength.rows(); ++i) {
+    const auto holds = [&](const Pairing& p) { return p.output == i; };
+    if (std::any_of(pairs.begin(), pairs.end(), holds)) continue;
+    std::vector<bool> tried(static_cast<std::size_t>(strength.cols()), false);
+    giveInput(strength, i, tried, pairs);
   }
   return pairs;
+}
+
+/// An integrator has no settling time; what a load needs to shift it by a step takes its place, as
+/// far as the record shows it.
+double longestFilling(const CommissioningBrief& brief, const ProcessModels& models,
+                      const Vector& u_range) {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < models.fits.size(); ++i) {
+    const ProcessFit& fit = models.fits[i];
+    if (fit.kind != ProcessKind::kIntegrating) continue;
+    const auto at = static_cast<Index>(i);
+    const double room =
+        std::min(brief.upper[at] - brief.hold[at], brief.hold[at] - brief.lower[at]);
+    double most = 0.0;  // per second
+    for (Index j = 0; j < u_range.size(); ++j)
+      most = std::max(most, std::abs(fit.elements[static_cast<std::size_t>(j)].element.gain) *
+                                kLoadReach * u_range[j]);
+    const double record = static_cast<double>(fit.rows) * brief.loop.plant_info.sample_time_s;
+    if (most > 0.0) longest = std::max(longest, std::min(kStepRoom * room / most, kSeen * record));
+  }
+  return longest;
 }
 
 Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) {
@@ -109,7 +161,7 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
       if (fit.elements[static_cast<std::size_t>(j)].seen)
         o.settling =
             std::max(o.settling, fit.elements[static_cast<std::size_t>(j)].element.settling());
-  o.settling = std::max(o.settling, 3.0 * Ts);
+  o.settling = std::max({o.settling, 3.0 * Ts, longestFilling(brief, models, o.u_range)});
   o.gain.setZero(n_y, n_u);
   for (Index i = 0; i < n_y; ++i)
     for (Index j = 0; j < n_u; ++j) {
@@ -190,8 +242,7 @@ class Designer {
         model_file_(std::move(model_file)),
         models_(models),
         params_(params),
-        outline_(outlineOf(brief, models)),
-        allowed_peak_(params.peak) {
+        outline_(outlineOf(brief, models)) {
     std::vector<const TsModel*> all;
     for (const TsModel& member : models.ensemble) all.push_back(&member);
     require(split(all), "ensemble", "more members than are tuned on");
@@ -205,8 +256,10 @@ class Designer {
     if (refuted_) return untuned(d);
     const Vector pi = searchedPi(d.pi_figures);
     pi_ = piOf(pi);
+    if (d.pi_figures.excess > 1.0) d.remarks.push_back(leavePi());
     const Vector law = searched(
         "law", lawStarts(), [this](const Vector& x) { return lawText(x); }, d.law_figures);
+    nameUnpaired(d);
     d.probed = tuned_.size() + held_out_.size();
     d.pi = piText(pi);
     d.law = lawText(law);
@@ -236,20 +289,48 @@ class Designer {
   void leaveOutRefuted(Design& d) {
     if (!hasPresent(brief_)) return;
     show("models on which the present control holds");
-    std::vector<double> peaks(models_.ensemble.size());
-    parallelFor(peaks.size(), params_.threads, [&](std::size_t m) {
-      peaks[m] = probe(brief_.loop.resolved, models_.ensemble[m]).worst_peak;
-    });
-    std::vector<const TsModel*> held;
-    for (std::size_t m = 0; m < peaks.size(); ++m)
-      if (peaks[m] <= kMostPresent) held.push_back(&models_.ensemble[m]);
+    std::vector<const TsModel*> all{&models_.model}, held;
+    for (const TsModel& member : models_.ensemble) all.push_back(&member);
+    const std::vector<DesignFigures> present = probes(brief_.loop.resolved, all);
+    for (std::size_t m = 0; m < all.size(); ++m) {
+      const double peak = present[m].worst_peak;
+      if (!(peak <= kMostPresent)) continue;
+      present_peaks_[all[m]] = peak;
+      if (m > 0) held.push_back(all[m]);
+    }
     d.refuted = models_.ensemble.size() - held.size();
     refuted_ = !split(held);
     if (refuted_) return;
-    // A plant that is hard to hold may not allow the peak that is asked for: then nothing may be
-    // more sensitive than the control in charge, on the same models.
-    d.present_peak = worst(probes(brief_.loop.resolved, tuned_)).worst_peak;
-    if (std::isfinite(d.present_peak)) allowed_peak_ = std::max(allowed_peak_, d.present_peak);
+    d.present_peak = 0.0;
+    for (const TsModel* model : tuned_)
+      if (present_peaks_.count(model) > 0)
+        d.present_peak = std::max(d.present_peak, present_peaks_.at(model));
+  }
+
+  /// A plant that is hard to hold may not allow the peak that is asked for: then nothing may be
+  /// more sensitive than the control in charge, on the same model.
+  double allowedPeak(const TsModel* model) const {
+    const auto present = present_peaks_.find(model);
+    return std::max(params_.peak, present == present_peaks_.end() ? 0.0 : present->second);
+  }
+
+  /// Largest of the models' peaks, in parts of what is allowed on each.
+  double excess(const std::vector<DesignFigures>& each,
+                const std::vector<const TsModel*>& models) const {
+    double most = 0.0;
+    for (std::size_t m = 0; m < each.size(); ++m)
+      most = std::max(most, each[m].worst_peak / allowedPeak(models[m]));
+    return most;
+  }
+
+  void nameUnpaired(Design& d) const {
+    for (Index i = 0; i < countOf(brief_.loop.plant_info.outputs); ++i) {
+      const bool paired = std::any_of(outline_.pairs.begin(), outline_.pairs.end(),
+                                      [&](const Pairing& pair) { return pair.output == i; });
+      if (brief_.held[static_cast<std::size_t>(i)] && !paired)
+        d.remarks.push_back(brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name +
+                            " has no PI: no input is left that moves it");
+    }
   }
 
   /// There is nothing to tune on: the loop files hold what a search would begin with.
@@ -300,6 +381,19 @@ class Designer {
       s = {t.kp, t.integral_time_min};
     }
     return s;
+  }
+
+  /// A PI that is not stable enough is no fallback of a law: the loops in charge are one where they
+  /// are PIs, else there is none.
+  std::string leavePi() {
+    pi_.clear();
+    for (Index p = 0; p < loops(); ++p) {
+      const PiSetting now = inCharge(p, {0.0, 0.0});
+      if (now.ti_min > 0.0) pi_.push_back(now);
+    }
+    has_fallback_ = static_cast<Index>(pi_.size()) == loops();
+    return has_fallback_ ? "the law falls back to the PIs in charge"
+                         : "the law has no fallback: inputs are held where it may not act";
   }
 
   /// x: log2 of what the rule's gain and integral time are multiplied by.
@@ -436,12 +530,13 @@ class Designer {
       comma = ", ";
     }
     c << "}}}";
-    return rewritten(
-        brief_, "law",
-        {{"model", "{file: '" + model_file_ + "'}"},
-         {"controller", c.str()},
-         {"guard", "{fallback: {type: pi, loops: " +
-                       piLoops(pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) + "}}"}});
+    std::vector<std::pair<std::string, std::string>> sections{
+        {"model", "{file: '" + model_file_ + "'}"}, {"controller", c.str()}};
+    if (has_fallback_)
+      sections.emplace_back(
+          "guard", "{fallback: {type: pi, loops: " +
+                       piLoops(pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) + "}}");
+    return rewritten(brief_, "law", sections);
   }
 
   // ---- judging
@@ -574,14 +669,14 @@ class Designer {
            (sum / static_cast<double>(all.size()) + *std::max_element(all.begin(), all.end()));
   }
 
-  /// The cost, dearer the less stable the loop is on one of `asked`. That takes several times as
-  /// long as the runs and is asked only of what is below `least`.
+  /// The cost, dearer the less stable the loop is on one of `asked`; `peak`: see excess(). That
+  /// takes several times as long as the runs and is asked only of what is below `least`.
   double value(const std::string& text, const std::vector<const TsModel*>& asked, double least,
                double& peak) const {
     const double cost = tunedCost(text);
     if (cost >= least) return cost;
-    peak = worst(probes(text, asked)).worst_peak;
-    return cost * std::pow(std::max(std::min(peak, kMostPeak) / allowed_peak_, 1.0), kPeakPower);
+    peak = excess(probes(text, asked), asked);
+    return cost * std::pow(std::clamp(peak, 1.0, kMostPeak), kPeakPower);
   }
 
   template <typename Text>
@@ -613,7 +708,7 @@ class Designer {
         show(what + ": " + std::to_string(++count) + " settings");
         double peak = kInfinity;
         const double cost = value(text(at), asked, least, peak);
-        if (peak <= allowed_peak_ && cost < cheapest) {
+        if (peak <= 1.0 && cost < cheapest) {
           cheapest = cost;
           stable = at;
         }
@@ -623,18 +718,25 @@ class Designer {
       const bool found = stable.size() > 0;
       if (found) x = stable;
       const std::vector<DesignFigures> more = probes(text(x), others);
-      const auto last = std::max_element(
-          more.begin(), more.end(),
-          [](const auto& p, const auto& q) { return p.worst_peak < q.worst_peak; });
-      if ((found && last->worst_peak <= allowed_peak_) || round == kMostRounds) {
-        figures = worst({worst(probes(text(x), asked)), worst(more)});
+      double most = 0.0;
+      std::ptrdiff_t last = 0;
+      for (std::size_t m = 0; m < more.size(); ++m) {
+        const double part = more[m].worst_peak / allowedPeak(others[m]);
+        if (part <= most) continue;
+        most = part;
+        last = static_cast<std::ptrdiff_t>(m);
+      }
+      if ((found && most <= 1.0) || round == kMostRounds) {
+        const std::vector<DesignFigures> each = probes(text(x), asked);
+        figures = worst({worst(each), worst(more)});
+        figures.excess = std::max(most, excess(each, asked));
         figures.tuned = tunedCost(text(x));
         return x;
       }
       if (!found && round == 0) x = leastOf(starts, text, asked);
       if (!found) continue;
-      asked.push_back(others[static_cast<std::size_t>(last - more.begin())]);
-      others.erase(others.begin() + (last - more.begin()));
+      asked.push_back(others[static_cast<std::size_t>(last)]);
+      others.erase(others.begin() + last);
     }
   }
 
@@ -704,7 +806,8 @@ class Designer {
       mean += r / n;
       square += r * r / n;
     }
-    return {mean, normalBound(0.95) * std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0))};
+    return {mean, studentBound(0.95, n - 1.0) *
+                      std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0))};
   }
 
   void compare(Design& d) const {
@@ -715,13 +818,13 @@ class Designer {
     d.ratio_bound = d.ratio * std::expm1(ratio.half);
     if (hasPresent(brief_)) d.present_costs = costsOver(brief_.loop.resolved, held_out_);
     const auto isFit = [&](const DesignFigures& figures, const std::string& name) {
-      const bool stable = figures.worst_peak <= allowed_peak_;
+      const bool stable = figures.excess <= 1.0;
       const bool better =
           d.present_costs.empty() || ratioOf(figures.costs, d.present_costs).isBetter();
       if (!stable)
         d.remarks.push_back("the " + name +
-                            " is not stable on every model with a sensitivity peak below " +
-                            shortText(allowed_peak_));
+                            " is not stable on every model with a sensitivity peak of at most " +
+                            shortText(params_.peak) + ", or of the control in charge there");
       else if (!better)
         d.remarks.push_back("the " + name + " does not beat the control in charge");
       return stable && better;
@@ -770,8 +873,10 @@ class Designer {
   Outline outline_;
   std::vector<const TsModel*> tuned_, held_out_;
   std::vector<PiSetting> pi_;
-  double pull_{}, allowed_peak_;
+  std::map<const TsModel*, double> present_peaks_;  // of the control in charge, where it holds
+  double pull_{};
   bool refuted_{false};  // too few of the models hold under the present control
+  bool has_fallback_{true};
 };
 
 }  // namespace

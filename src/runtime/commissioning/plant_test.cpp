@@ -33,6 +33,7 @@ constexpr double kSettlings = 5.0;                     // that a test lasts at l
 constexpr double kDeadTime = 0.25;  // of dead time and lags: bound asked of the dead time
 constexpr double kMatters = 0.3;    // of an output's largest gain: dead times that matter
 constexpr int kTwice = 2;           // fits in a row that are good enough
+constexpr Index kLongLag = 10;      // part of the test before an output is said to integrate
 constexpr double kListen = 0.5;     // of the time left: for disturbances that have not moved yet
 
 }  // namespace
@@ -120,7 +121,7 @@ void PlantTest::add(const Measurement& now, VectorRef sent) {
   }
 }
 
-/// Fits all outputs to what has been seen; an output that nothing moves leaves all as they were.
+/// Fits all outputs to what has been seen; one that cannot be fitted stays as it was.
 void PlantTest::know() {
   const Matrix inputs = record_.inputsAndDisturbances();
   std::vector<ProcessFit> fits;
@@ -128,27 +129,34 @@ void PlantTest::know() {
   p.ensemble = 0;
   p.passing = true;
   p.seed = params_.seed;
-  try {
-    for (Index i = 0; i < n_y_; ++i)
+  for (Index i = 0; i < n_y_; ++i) {
+    try {
       fits.push_back(fitProcess(inputs, record_.outputs().col(i), record_.info().sample_time_s, p));
-  } catch (const InputError&) {
-    return;
+    } catch (const InputError&) {
+      if (fits_.empty()) return;
+      fits.push_back(fits_[static_cast<std::size_t>(i)]);  // what is known of it
+    }
   }
   fits_ = std::move(fits);
-  settling_ = 0.0;
+  settling_ = dead_time_ = 0.0;
   for (Index i = 0; i < n_y_; ++i)
     for (Index j = 0; j < n_u_; ++j) {
       const ElementEstimate& e =
           fits_[static_cast<std::size_t>(i)].elements[static_cast<std::size_t>(j)];
       const double longest = record_.info().sample_time_s * static_cast<double>(record_.rows());
-      if (e.seen && e.gain_bound < std::abs(e.element.gain))
+      if (e.seen && e.gain_bound < std::abs(e.element.gain)) {
         settling_ = std::max(settling_, std::min(e.element.settling(), longest));
+        dead_time_ = std::max(dead_time_, std::min(e.element.dead_time, longest));
+      }
       Track& t = tracks_[static_cast<std::size_t>(i * n_u_ + j)];
       t.seen = e.seen && fits_[static_cast<std::size_t>(i)].kind != ProcessKind::kUnstable;
       if (!t.seen) continue;
       t.sampled = sampled(e.element, record_.info().sample_time_s);
       t.a = product(t.sampled.own, t.sampled.shared);
       t.margin = std::min(1.0, e.gain_bound / std::abs(e.element.gain));
+      // An integrator is at rest near the mean of its input, wherever that began.
+      t.rest = e.element.integrating ? fits_[static_cast<std::size_t>(i)].input[j]
+                                     : record_.inputs()(0, j);
       t.w.assign(1, 0.0);
     }
   follow();
@@ -161,7 +169,7 @@ void PlantTest::follow() {
     for (Index j = 0; j < n_u_; ++j) {
       Track& t = tracks_[static_cast<std::size_t>(i * n_u_ + j)];
       if (!t.seen) continue;
-      const auto input = [&](Index k) { return u(k, j) - u(0, j); };
+      const auto input = [&](Index k) { return u(k, j) - t.rest; };
       while (static_cast<Index>(t.w.size()) <= record_.rows())
         t.w.push_back(t.next(static_cast<Index>(t.w.size()), t.w, input));
     }
@@ -170,9 +178,11 @@ void PlantTest::follow() {
 /// Changes of the outputs from now on, for each input at each of its levels.
 void PlantTest::predict(const Vector& present) {
   const double Ts = record_.info().sample_time_s;
-  const Index H =
-      std::clamp(static_cast<Index>(std::ceil((params_.closed ? 0.5 : 1.0) * settling_ / Ts)),
-                 kShortestAhead, kLongestAhead);
+  // Past all dead times and the way to a level.
+  const double ramp = (2.0 * amplitude_).cwiseQuotient(params_.limits.move).maxCoeff(),
+               lags = (params_.closed ? 0.5 : 1.0) * std::max(settling_ - dead_time_, 0.0);
+  const Index H = static_cast<Index>(std::clamp<double>(std::ceil((dead_time_ + lags) / Ts + ramp),
+                                                        kShortestAhead, kLongestAhead));
   const auto& u = record_.inputs();
   const Index now = record_.rows();  // of the sample that is answered
   for (Index j = 0; j < n_u_; ++j)
@@ -189,7 +199,7 @@ void PlantTest::predict(const Vector& present) {
         const Track& t = tracks_[static_cast<std::size_t>(i * n_u_ + j)];
         if (!t.seen) continue;
         const auto input = [&](Index k) {
-          return (k >= now ? planned[k - now] : u(k, j)) - u(0, j);
+          return (k >= now ? planned[k - now] : u(k, j)) - t.rest;
         };
         const auto known = static_cast<Index>(t.w.size());
         std::vector<double> w(t.w.end() - std::min<Index>(known, countOf(t.a)), t.w.end());
@@ -228,9 +238,14 @@ void PlantTest::leaveUnsure(std::vector<int>& levels) const {
     }
 }
 
-bool PlantTest::nearLimit() const {
-  for (Index i = 0; i < n_y_; ++i)
-    if (std::abs(last_output_[i] - params_.hold[i]) > kHalfway * room_[i]) return true;
+/// An output of which nothing is known that could be predicted is halfway to a limit.
+bool PlantTest::nearLimitUnknown() const {
+  for (Index i = 0; i < n_y_; ++i) {
+    const auto first = tracks_.begin() + i * n_u_;
+    if (std::none_of(first, first + n_u_, [](const Track& t) { return t.seen; }) &&
+        std::abs(last_output_[i] - params_.hold[i]) > kHalfway * room_[i])
+      return true;
+  }
   return false;
 }
 
@@ -260,11 +275,9 @@ const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
     left_[j] = static_cast<int>(std::lround(shortest * std::pow(ratio, uniform(engine_)))) - 1;
   }
   std::vector<int> taken = asked;
-  const bool knows =
-      std::any_of(tracks_.begin(), tracks_.end(), [](const Track& t) { return t.seen; });
-  if (!knows) {
-    if (nearLimit()) std::fill(taken.begin(), taken.end(), 0);
-  } else {
+  if (nearLimitUnknown()) {
+    std::fill(taken.begin(), taken.end(), 0);
+  } else if (std::any_of(tracks_.begin(), tracks_.end(), [](const Track& t) { return t.seen; })) {
     predict(present);
     double least = excess(taken).sum();
     // The input that helps most is turned, or left out, until no limit is left any more.
@@ -333,7 +346,10 @@ void PlantTest::judge() {
   };
   for (Index i = 0; i < n_y_; ++i) {
     const ProcessFit& fit = fits_[static_cast<std::size_t>(i)];
-    if (!params_.closed && fit.kind != ProcessKind::kStable && rows() >= 2 * kFirstFit) {
+    const Index fewest = fit.kind == ProcessKind::kUnstable
+                             ? 2 * kFirstFit  // a long lag looks like an integrator at first
+                             : std::max(2 * kFirstFit, params_.most_rows / kLongLag);
+    if (!params_.closed && fit.kind != ProcessKind::kStable && rows() >= fewest) {
       end_ = TestEnd::kNeedsLoop;
       reason_ = record_.info().outputs[static_cast<std::size_t>(i)].name +
                 (fit.kind == ProcessKind::kUnstable ? " is unstable" : " integrates") +

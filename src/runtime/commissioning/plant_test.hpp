@@ -67,7 +67,7 @@ class PlantTest {
   void leaveUnsure(std::vector<int>& levels) const;
   void follow();
   void predict(const Vector& present);
-  bool nearLimit() const;
+  bool nearLimitUnknown() const;
   double effect(const ElementEstimate& e) const;
   Vector sent(const std::vector<int>& levels, const Vector& present, VectorRef previous) const;
 
@@ -82,8 +82,9 @@ class PlantTest {
     std::vector<double> a;  // whole denominator
     std::vector<double> w;
     double margin{};  // by which its gain may be larger
+    double rest{};    // of the input
     /// w(k), behind w(k - 1) and those before it, of which `before` has the last ones; input(k):
-    /// from that of the first row.
+    /// from `rest`.
     template <typename Input>
     double next(Eigen::Index k, const std::vector<double>& before, const Input& input) const;
   };
@@ -93,7 +94,7 @@ class PlantTest {
   std::vector<int> level_, left_;
   std::mt19937_64 engine_;
   std::uint64_t turned_{};
-  double settling_{};
+  double settling_{}, dead_time_{};  // [s], longest of what is known
   int enough_{};
   TestEnd end_{TestEnd::kNone};
   std::string reason_;

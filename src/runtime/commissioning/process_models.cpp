@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numeric>
 
 #include "base/decompositions.hpp"
 #include "base/files.hpp"
@@ -20,7 +21,8 @@ namespace {
 using Eigen::Index;
 namespace fs = std::filesystem;
 
-constexpr double kWeak = 0.1;  // of the strongest direction's gain
+constexpr double kWeak = 0.1;         // of the strongest direction's gain
+constexpr double kLostAtRest = 1e-4;  // of a denominator's value at rest
 
 TsModel modelNames(const CommissioningBrief& brief) {
   const PlantInfo& plant = brief.loop.plant_info;
@@ -69,6 +71,42 @@ SignalInfo loadSignal(const SignalInfo& output, ProcessKind kind, double sample_
   return {loadName(output.name), output.unit + (integrating ? "/h" : ""), -width, width};
 }
 
+double sumOf(const std::vector<double>& polynomial) {
+  return std::accumulate(polynomial.begin(), polynomial.end(), 0.0);
+}
+
+/// The common denominator of an output's elements keeps its value at rest: of many slow poles the
+/// coefficients cancel to nothing but rounding.
+bool isSound(const ProcessFit& fit, double sample_time_s,
+             const std::vector<ProcessElement>& elements) {
+  std::vector<double> all{1.0};
+  double exact = 1.0;
+  for (std::size_t j = 0; j < elements.size(); ++j) {
+    if (!fit.elements[j].seen) continue;
+    const std::vector<double> own = sampled(elements[j], sample_time_s).own;
+    all = product(all, own);
+    exact *= sumOf(own);
+  }
+  return std::abs(sumOf(all) - exact) < kLostAtRest * std::abs(exact);
+}
+
+/// Until it is: the shortest of two lags becomes dead time.
+void dropLags(const ProcessFit& fit, double sample_time_s, std::vector<ProcessElement>& elements) {
+  while (!isSound(fit, sample_time_s, elements)) {
+    ProcessElement* least = nullptr;
+    for (std::size_t j = 0; j < elements.size(); ++j) {
+      ProcessElement& e = elements[j];
+      const bool two = fit.elements[j].seen && !e.integrating && e.time_constant > 0.0 &&
+                       e.second > 0.0 && e.damping >= 1.0 && e.lead == 0.0;
+      if (two && (least == nullptr || e.second < least->second)) least = &e;
+    }
+    if (least == nullptr) return;
+    if (least->second > least->time_constant) std::swap(least->second, least->time_constant);
+    least->dead_time += least->second;
+    least->second = 0.0;
+  }
+}
+
 TsModel modelOf(TsModel names, const std::vector<ProcessFit>& fits, int member,
                 const std::vector<bool>& loads) {
   std::vector<SampledLinearElement> all;
@@ -76,10 +114,11 @@ TsModel modelOf(TsModel names, const std::vector<ProcessFit>& fits, int member,
   LinearPoint point = modelRest(fits, n_u);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const ProcessFit& fit = fits[i];
-    const auto elementOf = [&](std::size_t j) -> const ProcessElement& {
-      return member < 0 ? fit.elements[j].element
-                        : fit.ensemble[static_cast<std::size_t>(member)][j];
-    };
+    std::vector<ProcessElement> elements;
+    for (std::size_t j = 0; j < fit.elements.size(); ++j)
+      elements.push_back(member < 0 ? fit.elements[j].element
+                                    : fit.ensemble[static_cast<std::size_t>(member)][j]);
+    dropLags(fit, names.sample_time_s, elements);
     const std::size_t most = strongest(fit, names.inputs);
     int place = 0, poles = -1;
     for (std::size_t j = 0; j < fit.elements.size(); ++j) {
@@ -89,12 +128,12 @@ TsModel modelOf(TsModel names, const std::vector<ProcessFit>& fits, int member,
       const bool input = static_cast<Index>(j) < n_u;
       all.push_back({static_cast<int>(i), input ? SignalKind::kInput : SignalKind::kDisturbance,
                      static_cast<int>(input ? j : j - static_cast<std::size_t>(n_u)),
-                     sampled(elementOf(j), names.sample_time_s)});
+                     sampled(elements[j], names.sample_time_s)});
     }
     if (!loads[i]) continue;
     all.push_back({static_cast<int>(i), SignalKind::kDisturbance,
                    static_cast<int>(countOf(names.disturbances)),
-                   sampled(loadOf(elementOf(most)), names.sample_time_s), poles});
+                   sampled(loadOf(elements[most]), names.sample_time_s), poles});
     names.disturbances.push_back(loadSignal(names.outputs[i], fit.kind, names.sample_time_s));
   }
   const Index measured = point.disturbances.size();

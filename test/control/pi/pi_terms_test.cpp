@@ -100,6 +100,51 @@ TEST(PiTerms, FeedforwardIsGainTimesDeviationBehindItsLag) {
   EXPECT_NEAR(lag[5].second, 3.0 * (1.0 - std::exp(-1.0)), 1e-12);  // 5 samples of 0.2 h
 }
 
+/// A load: 3 (c q - 200), of what is 4 and 60 now.
+TEST(PiTerms, AProductIsFedForward) {
+  PiFeedforward load{0, 3.0, 200.0, 0.0};
+  load.times = 1;
+  PiTerms terms;
+  terms.feedforward = {load};
+  PiTermState state(terms, 0, 1, kSampleTime);
+  state.reset();
+  SetpointSource setpoint = source();
+  setpoint.advance(0);
+  Measurement now = at(0, 0.0, 4.0);
+  now.disturbances = Eigen::Vector2d(4.0, 60.0);
+  state.aim(now, setpoint);
+  EXPECT_DOUBLE_EQ(state.sum(now, 1.0), 3.0 * 40.0);
+}
+
+/// Unclipped 8, sent 4: dI = dt (ki e + (4 - 8) / Tt).
+TEST(PiTerms, TheClippedPartComesBackWithTheTrackingTime) {
+  PlantInfo info;
+  info.sample_time_s = 1800.0;
+  info.outputs = {{"y", "", 0, 100}};
+  info.inputs = {{"u", "", -2, 4}};
+  PiLoop loop;
+  loop.kp = 2.0;
+  loop.ki_per_h = 0.5;
+  loop.reverse = true;
+  loop.anti_windup = AntiWindup::kTracking;
+  for (const auto& [time_h, integral] :
+       {std::pair{2.0, 0.0}, {8.0, 0.75}, {0.0, 0.5}, {0.1, -3.0}}) {
+    loop.tracking_time_h = time_h;
+    PiController law(
+        {{loop}, {}},
+        {Vector::Constant(1, -2.0), Vector::Constant(1, 4.0), Vector::Constant(1, kInfinity)},
+        info);
+    SetpointSource setpoint = source();
+    setpoint.advance(0);
+    const Measurement now = at(0, 14.0, 0.0);
+    law.reset(now);
+    ControllerOutput output;
+    law.step(now, setpoint, output);
+    EXPECT_EQ(output.input[0], 4.0);
+    EXPECT_NEAR(law.signals()[0].second, integral, 1e-14) << time_h;
+  }
+}
+
 PlantInfo plant() {
   PlantInfo info;
   info.header.time_ns = 1000000000;
@@ -143,6 +188,12 @@ TEST(PiTerms, MistakesNameTheirKey) {
           l.terms.feedforward = {{1, 1.0, 0.0, 0.0}};
         }),
         "feedforward[0].disturbance");
+  names(errorWith([](PiLoop& l) {
+          l.terms.feedforward = {{0, 1.0, 0.0, 0.0}};
+          l.terms.feedforward[0].times = 1;
+        }),
+        "feedforward[0].times");
+  names(errorWith([](PiLoop& l) { l.tracking_time_h = -1.0; }), "tracking_time_h");
   names(errorWith([](PiLoop& l) { l.terms.feedforward = {{0, 1.0, 0.0, -1.0}}; }), "lag_h");
   names(errorWith([](PiLoop& l) { l.terms.preview_h = -1.0; }), "preview_h");
   names(errorWith([](PiLoop& l) { l.terms.setpoint_pole = 1.0; }), "setpoint_pole");
