@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <sstream>
 
@@ -242,7 +241,8 @@ class Designer {
         model_file_(std::move(model_file)),
         models_(models),
         params_(params),
-        outline_(outlineOf(brief, models)) {
+        outline_(outlineOf(brief, models)),
+        allowed_peak_(params.peak) {
     std::vector<const TsModel*> all;
     for (const TsModel& member : models.ensemble) all.push_back(&member);
     require(split(all), "ensemble", "more members than are tuned on");
@@ -256,7 +256,7 @@ class Designer {
     if (refuted_) return untuned(d);
     const Vector pi = searchedPi(d.pi_figures);
     pi_ = piOf(pi);
-    if (d.pi_figures.excess > 1.0) d.remarks.push_back(leavePi());
+    if (!(d.pi_figures.worst_peak <= allowed_peak_)) d.remarks.push_back(leavePi());
     const Vector law = searched(
         "law", lawStarts(), [this](const Vector& x) { return lawText(x); }, d.law_figures);
     nameUnpaired(d);
@@ -289,38 +289,22 @@ class Designer {
   void leaveOutRefuted(Design& d) {
     if (!hasPresent(brief_)) return;
     show("models on which the present control holds");
-    std::vector<const TsModel*> all{&models_.model}, held;
+    std::vector<const TsModel*> all, held;
     for (const TsModel& member : models_.ensemble) all.push_back(&member);
     const std::vector<DesignFigures> present = probes(brief_.loop.resolved, all);
+    std::vector<double> peaks;
     for (std::size_t m = 0; m < all.size(); ++m) {
-      const double peak = present[m].worst_peak;
-      if (!(peak <= kMostPresent)) continue;
-      present_peaks_[all[m]] = peak;
-      if (m > 0) held.push_back(all[m]);
+      if (!(present[m].worst_peak <= kMostPresent)) continue;
+      held.push_back(all[m]);
+      peaks.push_back(present[m].worst_peak);
     }
-    d.refuted = models_.ensemble.size() - held.size();
+    d.refuted = all.size() - held.size();
     refuted_ = !split(held);
     if (refuted_) return;
-    d.present_peak = 0.0;
-    for (const TsModel* model : tuned_)
-      if (present_peaks_.count(model) > 0)
-        d.present_peak = std::max(d.present_peak, present_peaks_.at(model));
-  }
-
-  /// A plant that is hard to hold may not allow the peak that is asked for: then nothing may be
-  /// more sensitive than the control in charge, on the same model.
-  double allowedPeak(const TsModel* model) const {
-    const auto present = present_peaks_.find(model);
-    return std::max(params_.peak, present == present_peaks_.end() ? 0.0 : present->second);
-  }
-
-  /// Largest of the models' peaks, in parts of what is allowed on each.
-  double excess(const std::vector<DesignFigures>& each,
-                const std::vector<const TsModel*>& models) const {
-    double most = 0.0;
-    for (std::size_t m = 0; m < each.size(); ++m)
-      most = std::max(most, each[m].worst_peak / allowedPeak(models[m]));
-    return most;
+    // A plant that is hard to hold may not allow the peak that is asked for: then nothing may be
+    // more sensitive than the control in charge is on half of the models.
+    d.present_peak = median(peaks);
+    allowed_peak_ = std::max(allowed_peak_, d.present_peak);
   }
 
   void nameUnpaired(Design& d) const {
@@ -669,14 +653,14 @@ class Designer {
            (sum / static_cast<double>(all.size()) + *std::max_element(all.begin(), all.end()));
   }
 
-  /// The cost, dearer the less stable the loop is on one of `asked`; `peak`: see excess(). That
-  /// takes several times as long as the runs and is asked only of what is below `least`.
+  /// The cost, dearer the less stable the loop is on one of `asked`. That takes several times as
+  /// long as the runs and is asked only of what is below `least`.
   double value(const std::string& text, const std::vector<const TsModel*>& asked, double least,
                double& peak) const {
     const double cost = tunedCost(text);
     if (cost >= least) return cost;
-    peak = excess(probes(text, asked), asked);
-    return cost * std::pow(std::clamp(peak, 1.0, kMostPeak), kPeakPower);
+    peak = worst(probes(text, asked)).worst_peak;
+    return cost * std::pow(std::max(std::min(peak, kMostPeak) / allowed_peak_, 1.0), kPeakPower);
   }
 
   template <typename Text>
@@ -708,7 +692,7 @@ class Designer {
         show(what + ": " + std::to_string(++count) + " settings");
         double peak = kInfinity;
         const double cost = value(text(at), asked, least, peak);
-        if (peak <= 1.0 && cost < cheapest) {
+        if (peak <= allowed_peak_ && cost < cheapest) {
           cheapest = cost;
           stable = at;
         }
@@ -718,25 +702,19 @@ class Designer {
       const bool found = stable.size() > 0;
       if (found) x = stable;
       const std::vector<DesignFigures> more = probes(text(x), others);
-      double most = 0.0;
-      std::ptrdiff_t last = 0;
-      for (std::size_t m = 0; m < more.size(); ++m) {
-        const double part = more[m].worst_peak / allowedPeak(others[m]);
-        if (part <= most) continue;
-        most = part;
-        last = static_cast<std::ptrdiff_t>(m);
-      }
-      if ((found && most <= 1.0) || round == kMostRounds) {
-        const std::vector<DesignFigures> each = probes(text(x), asked);
-        figures = worst({worst(each), worst(more)});
-        figures.excess = std::max(most, excess(each, asked));
+      const auto last = std::max_element(
+          more.begin(), more.end(),
+          [](const auto& p, const auto& q) { return p.worst_peak < q.worst_peak; });
+      const bool holds = last == more.end() || last->worst_peak <= allowed_peak_;
+      if ((found && holds) || round == kMostRounds) {
+        figures = worst({worst(probes(text(x), asked)), worst(more)});
         figures.tuned = tunedCost(text(x));
         return x;
       }
       if (!found && round == 0) x = leastOf(starts, text, asked);
       if (!found) continue;
-      asked.push_back(others[static_cast<std::size_t>(last)]);
-      others.erase(others.begin() + last);
+      asked.push_back(others[static_cast<std::size_t>(last - more.begin())]);
+      others.erase(others.begin() + (last - more.begin()));
     }
   }
 
@@ -818,13 +796,13 @@ class Designer {
     d.ratio_bound = d.ratio * std::expm1(ratio.half);
     if (hasPresent(brief_)) d.present_costs = costsOver(brief_.loop.resolved, held_out_);
     const auto isFit = [&](const DesignFigures& figures, const std::string& name) {
-      const bool stable = figures.excess <= 1.0;
+      const bool stable = figures.worst_peak <= allowed_peak_;
       const bool better =
           d.present_costs.empty() || ratioOf(figures.costs, d.present_costs).isBetter();
       if (!stable)
         d.remarks.push_back("the " + name +
                             " is not stable on every model with a sensitivity peak of at most " +
-                            shortText(params_.peak) + ", or of the control in charge there");
+                            shortText(allowed_peak_));
       else if (!better)
         d.remarks.push_back("the " + name + " does not beat the control in charge");
       return stable && better;
@@ -873,8 +851,7 @@ class Designer {
   Outline outline_;
   std::vector<const TsModel*> tuned_, held_out_;
   std::vector<PiSetting> pi_;
-  std::map<const TsModel*, double> present_peaks_;  // of the control in charge, where it holds
-  double pull_{};
+  double pull_{}, allowed_peak_;
   bool refuted_{false};  // too few of the models hold under the present control
   bool has_fallback_{true};
 };

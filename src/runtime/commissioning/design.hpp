@@ -16,7 +16,7 @@ struct DesignParams {
   int evaluations{48};   ///< points that each search judges, each over the tuned members
   int tuned_members{4};  ///< beside the likeliest model
   /// Largest sensitivity that a member may have (astrom2008), or that of the control in charge on
-  /// it.
+  /// half of them.
   double peak{2.0};
   double movement{0.1};  ///< weight of the moves beside the errors
   int threads{0};        ///< 0: all cores
@@ -29,7 +29,6 @@ struct DesignFigures {
   double tuned{kInfinity};    ///< mean cost over what it was tuned on; infinite: was not tuned
   std::vector<double> costs;  ///< of each member that was held out
   double worst_peak{};        ///< sensitivity, largest of the models probed; infinite: not stable
-  double excess{kInfinity};   ///< likewise, in parts of what is allowed on each model
   double least_gain{}, least_delay_s{};  ///< margins, least of them
 };
 
@@ -45,7 +44,7 @@ struct Design {
   std::vector<double> present_costs;  ///< as `costs`, of the control in charge; empty: none
   std::vector<std::string> remarks;
   std::vector<WeakDirection> weak;
-  /// Of the control in charge, largest on the models tuned on; infinite: none, or not looked at.
+  /// Of the control in charge, median of the members; infinite: none, or not looked at.
   double present_peak{kInfinity};
   std::size_t refuted{};  ///< members of the ensemble on which the control in charge is not stable
   std::size_t probed{};   ///< models: the likeliest, and all members that were not refuted
