@@ -387,6 +387,55 @@ TEST_F(DesignOf, AnOpenTankKeepsThePeakThatIsAskedForOrOffersNothing) {
   EXPECT_EQ(never.law.find("fallback"), std::string::npos) << "a PI that is not fit is none";
 }
 
+/// The larger effect of u is on a, which v moves as well; b has no other input than u.
+TEST(Design, AnOutputTakesTheInputThatAnotherCanDoWithout) {
+  const std::string signal = ", unit: '', nominal: 0, lower: -100, upper: 100}";
+  const std::string folder =
+      folderOf("pairs",
+               "loop: pairs.yaml\nlimits: {a: [-10, 10], b: [-10, 10]}\nmoves: {u: 5, v: 5, w: 5}\n"
+               "plant_time_h: 12\n",
+               "pairs.yaml",
+               "plant:\n  type: transfer_matrix\n  matrix:\n    outputs: [{name: a" + signal +
+                   ", {name: b" + signal + "]\n    inputs: [{name: u" + signal + ", {name: v" +
+                   signal + ", {name: w" + signal +
+                   "]\n    elements:\n"
+                   "      - {output: a, from: u, gain: 1, time_constant_min: 2}\n"
+                   "      - {output: a, from: v, gain: 0.3, time_constant_min: 2}\n"
+                   "      - {output: b, from: u, gain: 0.5, time_constant_min: 2}\n"
+                   "sampling: {sample_time_s: 30, duration_h: 4}\n"
+                   "controller: {type: excitation, signals: [{input: u, signal: none}]}\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const double gains[2][3] = {{1.0, 0.3, 0.0}, {0.5, 0.0, 0.0}};
+  std::vector<ProcessFit> fits(2);
+  TsModel names;
+  names.name = "pairs";
+  names.sample_time_s = 30.0;
+  names.outputs = brief.loop.plant_info.outputs;
+  names.inputs = brief.loop.plant_info.inputs;
+  for (std::size_t i = 0; i < 2; ++i) {
+    fits[i].one_step = fits[i].free_run = 0.01;
+    fits[i].input = Vector::Zero(3);
+    fits[i].ensemble.resize(4);
+    for (const double gain : gains[i]) {
+      const ProcessElement e{gain, 120.0, 0.0, 0.0, 30.0, false};
+      fits[i].elements.push_back({e, gain != 0.0});
+      for (auto& member : fits[i].ensemble) member.push_back(e);
+    }
+  }
+  const ProcessModels models = fpc::modelsOf(names, fits, 4, {true, true});
+  writeModels(models, folder);
+  DesignParams params;
+  params.evaluations = 2;
+  params.tuned_members = 2;
+  params.threads = 1;
+  const Design d =
+      designLaws(brief, Vector::Constant(2, 0.01), inFolder(folder, "model.yaml"), models, params);
+  const YAML::Node loops = YAML::Load(d.pi)["controller"]["loops"];
+  ASSERT_EQ(loops.size(), 2U);
+  for (const auto& loop : loops)
+    EXPECT_EQ(loop["input"].as<std::string>(), loop["output"].as<std::string>() == "a" ? "v" : "u");
+}
+
 /// The noise of the fit acts in the runs that are judged.
 TEST_F(DesignOf, AnOpenTankCostsMoreWithNoise) {
   const double quiet = design(2.0).pi_figures.tuned;
