@@ -3,6 +3,7 @@ import random
 import socket
 import struct
 import threading
+import time
 import xmlrpc.client
 
 SILENT = 0.3  # s for an answer
@@ -20,12 +21,13 @@ def ports(uri):
 
 
 def send(to, data, answer=False):
-    """What somebody sends who then hangs up, at once or when no more answers come."""
+    """What somebody sends who then hangs up, at once or when no more answers come; a topic's messages may come without end."""
+    end = time.monotonic() + 3.0 * SILENT
     try:
         with socket.create_connection(to, SILENT) as connection:
             connection.sendall(data)
             connection.settimeout(SILENT)
-            while answer and connection.recv(4096):
+            while answer and time.monotonic() < end and connection.recv(4096):
                 pass
     except OSError:
         pass
