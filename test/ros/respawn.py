@@ -73,14 +73,14 @@ class Respawn(unittest.TestCase):
         """The plant does not wait: every sample is there, those without an action in time are one gap, which is marked, and
         from the return of the controller on everything is as the operator asked."""
         measurements.wait(lambda m: m.final)
-        states, tracking = self.states.messages, {t.step: t for t in self.tracking.messages}
         self.states.wait(lambda s: s.step == 100)
+        self.tracking.wait(lambda t: t.step == 100)
+        states, tracking = self.states.messages, {t.step: t for t in self.tracking.messages}
         first = min(m.step for m in measurements.messages)
         self.assertEqual(list(range(first, 101)), sorted({m.step for m in measurements.messages}))
         missing = sorted({s.step for s in states if s.input_missing and s.step > asked})
         self.assertTrue(missing)
         self.assertEqual(list(range(missing[0], missing[-1] + 1)), missing)
-        self.tracking.wait(lambda t: t.step == 100)
         self.assertLess(missing[-1], 100)
         for step in range(asked, 101):
             if step in tracking:

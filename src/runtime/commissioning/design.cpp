@@ -29,7 +29,6 @@ constexpr double kStepRoom = 0.3;    // of the distance to a limit: steps of the
 constexpr double kStepReach = 0.5;   // of what the strongest input can do
 constexpr double kLoadReach = 0.1;   // of what the strongest input can do: loads
 constexpr double kLoadRoom = 0.5;    // of the distance to a limit, that a load may shift an output
-constexpr double kSeen = 0.2;        // of the record: what an integrator is seen to do
 constexpr double kViolation = 10.0;  // cost of all samples beyond the limits
 constexpr double kFailed = 1e3;      // cost of a run that fails
 constexpr double kCalm = 3.0;        // settling times of one stretch of the scenario
@@ -126,27 +125,6 @@ std::vector<Pairing> pairsOf(const CommissioningBrief& brief, const Matrix& scal
   return pairs;
 }
 
-/// An integrator has no settling time; what a load needs to shift it by a step takes its place, as
-/// far as the record shows it.
-double longestFilling(const CommissioningBrief& brief, const ProcessModels& models,
-                      const Vector& u_range) {
-  double longest = 0.0;
-  for (std::size_t i = 0; i < models.fits.size(); ++i) {
-    const ProcessFit& fit = models.fits[i];
-    if (fit.kind != ProcessKind::kIntegrating) continue;
-    const auto at = static_cast<Index>(i);
-    const double room =
-        std::min(brief.upper[at] - brief.hold[at], brief.hold[at] - brief.lower[at]);
-    double most = 0.0;  // per second
-    for (Index j = 0; j < u_range.size(); ++j)
-      most = std::max(most, std::abs(fit.elements[static_cast<std::size_t>(j)].element.gain) *
-                                kLoadReach * u_range[j]);
-    const double record = static_cast<double>(fit.rows) * brief.loop.plant_info.sample_time_s;
-    if (most > 0.0) longest = std::max(longest, std::min(kStepRoom * room / most, kSeen * record));
-  }
-  return longest;
-}
-
 Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) {
   const InputLimits& limits = brief.loop.simulation.actuator.limits;
   const Index n_y = countOf(brief.loop.plant_info.outputs),
@@ -160,7 +138,7 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
       if (fit.elements[static_cast<std::size_t>(j)].seen)
         o.settling =
             std::max(o.settling, fit.elements[static_cast<std::size_t>(j)].element.settling());
-  o.settling = std::max({o.settling, 3.0 * Ts, longestFilling(brief, models, o.u_range)});
+  o.settling = std::max(o.settling, 3.0 * Ts);
   o.gain.setZero(n_y, n_u);
   for (Index i = 0; i < n_y; ++i)
     for (Index j = 0; j < n_u; ++j) {
@@ -318,8 +296,10 @@ class Designer {
   }
 
   /// There is nothing to tune on: the loop files hold what a search would begin with.
-  Design untuned(Design& d) const {
-    d.pi = piText(Vector::Zero(2 * loops()));
+  Design untuned(Design& d) {
+    const Vector rule = Vector::Zero(2 * loops());
+    pi_ = piOf(rule);
+    d.pi = piText(rule);
     d.law = lawText(lawStarts().front());
     for (DesignFigures* figures : {&d.law_figures, &d.pi_figures}) figures->worst_peak = kInfinity;
     d.remarks.push_back("the present control holds the plant and would not hold " +
@@ -375,9 +355,9 @@ class Designer {
       const PiSetting now = inCharge(p, {0.0, 0.0});
       if (now.ti_min > 0.0) pi_.push_back(now);
     }
-    has_fallback_ = static_cast<Index>(pi_.size()) == loops();
-    return has_fallback_ ? "the law falls back to the PIs in charge"
-                         : "the law has no fallback: inputs are held where it may not act";
+    if (static_cast<Index>(pi_.size()) == loops()) return "the law falls back to the PIs in charge";
+    pi_.clear();
+    return "the law has no fallback: inputs are held where it may not act";
   }
 
   /// x: log2 of what the rule's gain and integral time are multiplied by.
@@ -516,10 +496,8 @@ class Designer {
     c << "}}}";
     std::vector<std::pair<std::string, std::string>> sections{
         {"model", "{file: '" + model_file_ + "'}"}, {"controller", c.str()}};
-    if (has_fallback_)
-      sections.emplace_back(
-          "guard", "{fallback: {type: pi, loops: " +
-                       piLoops(pi_.empty() ? piOf(Vector::Zero(2 * loops())) : pi_) + "}}");
+    if (!pi_.empty())
+      sections.emplace_back("guard", "{fallback: {type: pi, loops: " + piLoops(pi_) + "}}");
     return rewritten(brief_, "law", sections);
   }
 
@@ -850,10 +828,9 @@ class Designer {
   DesignParams params_;
   Outline outline_;
   std::vector<const TsModel*> tuned_, held_out_;
-  std::vector<PiSetting> pi_;
+  std::vector<PiSetting> pi_;  // the law's fallback; empty: none
   double pull_{}, allowed_peak_;
   bool refuted_{false};  // too few of the models hold under the present control
-  bool has_fallback_{true};
 };
 
 }  // namespace

@@ -33,7 +33,6 @@ constexpr double kSettlings = 5.0;                     // that a test lasts at l
 constexpr double kDeadTime = 0.25;  // of dead time and lags: bound asked of the dead time
 constexpr double kMatters = 0.3;    // of an output's largest gain: dead times that matter
 constexpr int kTwice = 2;           // fits in a row that are good enough
-constexpr Index kLongLag = 10;      // part of the test before an output is said to integrate
 constexpr double kListen = 0.5;     // of the time left: for disturbances that have not moved yet
 
 }  // namespace
@@ -346,10 +345,7 @@ void PlantTest::judge() {
   };
   for (Index i = 0; i < n_y_; ++i) {
     const ProcessFit& fit = fits_[static_cast<std::size_t>(i)];
-    const Index fewest = fit.kind == ProcessKind::kUnstable
-                             ? 2 * kFirstFit  // a long lag looks like an integrator at first
-                             : std::max(2 * kFirstFit, params_.most_rows / kLongLag);
-    if (!params_.closed && fit.kind != ProcessKind::kStable && rows() >= fewest) {
+    if (!params_.closed && fit.kind != ProcessKind::kStable && rows() >= 2 * kFirstFit) {
       end_ = TestEnd::kNeedsLoop;
       reason_ = record_.info().outputs[static_cast<std::size_t>(i)].name +
                 (fit.kind == ProcessKind::kUnstable ? " is unstable" : " integrates") +
