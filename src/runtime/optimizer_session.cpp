@@ -20,12 +20,12 @@ bool allFinite(const PredictiveAction& p) {
          (p.output_lower.array() <= p.output_upper.array()).all();
 }
 
+}  // namespace
+
 bool needsPrediction(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kClipped ||
          source == ActionSource::kGuarded;
 }
-
-}  // namespace
 
 OptimizerSession::OptimizerSession(ClpParams params, InputLimits limits, PlantInfo plant)
     : params_(std::move(params)),

@@ -5,6 +5,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "runtime/missing_parts.hpp"
+#include "runtime/session.hpp"
 
 namespace fpc {
 namespace {
@@ -12,6 +13,12 @@ namespace {
 constexpr double kRounding = 1e-6;           // of a limit: what a solver leaves
 constexpr double kAtBound = 1e-9;            // of an input's range
 constexpr std::uint32_t kLeastAtBound = 10;  // samples, and a tenth of the run
+
+/// Of an optimizer that answers, what a law asks for is always solved.
+bool stoodIn(const SampleRecord& sample) {
+  return sample.has_action && sample.report.status == SolveStatus::kNotRun &&
+         needsPrediction(sample.action.source);
+}
 
 }  // namespace
 
@@ -106,6 +113,7 @@ void RunEvents::addSources(const SampleRecord& sample) {
 
 void RunEvents::addSolve(const SampleRecord& sample) {
   if (!loop_.has_clp || !sample.has_report) return;
+  if (stoodIn(sample)) say({EventCode::kOptimizerLost}, step_);
   const Notice notice = noticeOf(sample.report.status);
   if (notice.code != EventCode::kNone) say(notice, step_);
 }

@@ -238,6 +238,9 @@ class ControllerSession {
   Settings settings_;
 };
 
+/// What a law asks for is solved with its prediction; a held, manual or fallback input goes through.
+bool needsPrediction(ActionSource source);
+
 /// The optimizer behind the ring: pairs base action and prediction of the same sample. Base actions
 /// of source base or clipped need a prediction; all others (held, manual, fallback) pass through
 /// with status not run. A prediction of wrong size, or not finite, is counted and the base action

@@ -49,5 +49,18 @@ TEST(RunEvents, ASolveThatFailsAndAHeldInputAreSaid) {
                                       "fallback_acts  11..11 (1)"}));
 }
 
+TEST(RunEvents, ASampleWithoutTheOptimizerIsSaid) {
+  const LoopFile loop =
+      readLoop("asp_case1_clp", {{"sampling.duration_h", "4"}, {"setpoint.schedule", "[]"}});
+  RunRecord record = runLoop(loop);
+  for (const std::size_t k : {5U, 6U, 9U, 12U}) {  // as the controller stands in for it
+    record.samples[k].action.source = ActionSource::kBase;
+    record.samples[k].report.status = SolveStatus::kNotRun;
+  }
+  record.samples[9].action.source = ActionSource::kManual;  // passed through by it
+  EXPECT_EQ(test::shown(summarize(loop, record, 0.0).events),
+            (std::vector<std::string>{"optimizer_lost  5..12 (3)"}));
+}
+
 }  // namespace runtime_run_events_test
 }  // namespace fpc
