@@ -238,7 +238,7 @@ class ControllerSession {
   Settings settings_;
 };
 
-/// What a law asks for is solved with its prediction; a held, manual or fallback input goes through.
+/// What a law asks for is solved with its prediction; other inputs are passed through.
 bool needsPrediction(ActionSource source);
 
 /// The optimizer behind the ring: pairs base action and prediction of the same sample. Base actions
