@@ -18,7 +18,10 @@ constexpr Index kFirstFit = 40;           // rows of the test
 constexpr double kNextFit = 1.25;         // the next one after so many times as many rows
 constexpr double kFirstAmplitude = 0.01;  // of an input's range
 constexpr double kMostAmplitude = 0.25;
-constexpr double kGrowth = 2.0;      // of an amplitude between two fits
+constexpr double kGrowth = 2.0;  // of an amplitude between two fits
+// Of an input of which nothing is known: not faster than the record, since an effect may still be
+// on its way.
+constexpr double kBlindGrowth = kNextFit;
 constexpr double kRoomShare = 0.5;   // of the distance to a limit that the levels may use
 constexpr double kSignal = 8.0;      // effect asked for, in deviations of the output
 constexpr double kMostUnsure = 0.5;  // of a gain, that it may be used with its bound
@@ -87,6 +90,7 @@ PlantTest::PlantTest(PlantTestParams params, PlantRecord watched)
   left_.assign(static_cast<std::size_t>(n_u_), 0);
   tracks_.resize(static_cast<std::size_t>(n_y_ * n_u_));
   ahead_.resize(static_cast<std::size_t>(3 * n_u_));
+  bound_.resize(ahead_.size());
   if (record_.rows() > 0) sent_ = record_.inputs().row(record_.rows() - 1).transpose();
 }
 
@@ -109,7 +113,7 @@ void PlantTest::add(const Measurement& now, VectorRef sent) {
       judge();
       setAmplitudes();
     } else {
-      amplitude_ = (kGrowth * amplitude_).cwiseMin(kMostAmplitude * span_);
+      amplitude_ = (kBlindGrowth * amplitude_).cwiseMin(kMostAmplitude * span_);
     }
   }
   if (end_ == TestEnd::kNone && rows() >= last_row_) {
@@ -174,7 +178,7 @@ void PlantTest::follow() {
     }
 }
 
-/// Changes of the outputs from now on, for each input at each of its levels.
+/// Changes of the outputs from now on, and their bounds, for each input at each of its levels.
 void PlantTest::predict(const Vector& present) {
   const double Ts = record_.info().sample_time_s;
   // Past all dead times and the way to a level.
@@ -187,7 +191,9 @@ void PlantTest::predict(const Vector& present) {
   for (Index j = 0; j < n_u_; ++j)
     for (int level = -1; level <= 1; ++level) {
       Matrix& ahead = ahead_[static_cast<std::size_t>(3 * j + level + 1)];
+      Matrix& bound = bound_[static_cast<std::size_t>(3 * j + level + 1)];
       ahead.setZero(n_y_, H);
+      bound.setZero(n_y_, H);
       Vector planned(H);
       double at = sent_[j];
       const double aim = std::clamp(present[j] + level * amplitude_[j], params_.limits.lower[j],
@@ -204,7 +210,8 @@ void PlantTest::predict(const Vector& present) {
         std::vector<double> w(t.w.end() - std::min<Index>(known, countOf(t.a)), t.w.end());
         for (Index h = 0; h < H; ++h) {
           w.push_back(t.next(known + h, w, input));
-          ahead(i, h) = (w.back() - t.w.back()) * (1.0 + t.margin);
+          ahead(i, h) = w.back() - t.w.back();
+          bound(i, h) = t.margin * std::abs(ahead(i, h));
         }
       }
     }
@@ -213,14 +220,18 @@ void PlantTest::predict(const Vector& present) {
 /// By how much each output would leave its limits under these levels, in parts of the room.
 Vector PlantTest::excess(const std::vector<int>& levels) const {
   const Index H = ahead_.front().cols();
-  Matrix change = Matrix::Zero(n_y_, H);
-  for (Index j = 0; j < n_u_; ++j)
-    change += ahead_[static_cast<std::size_t>(3 * j + levels[static_cast<std::size_t>(j)] + 1)];
+  Matrix change = Matrix::Zero(n_y_, H), bound = change;
+  for (Index j = 0; j < n_u_; ++j) {
+    const auto at = static_cast<std::size_t>(3 * j + levels[static_cast<std::size_t>(j)] + 1);
+    change += ahead_[at];
+    bound += bound_[at];
+  }
   Vector excess(n_y_);
   for (Index i = 0; i < n_y_; ++i) {
     const double kept = kNoises * params_.noise[i] + kLastPart * room_[i];
-    const double up = last_output_[i] + change.row(i).maxCoeff() - (params_.upper[i] - kept),
-                 down = params_.lower[i] + kept - (last_output_[i] + change.row(i).minCoeff());
+    const double highest = last_output_[i] + (change + bound).row(i).maxCoeff(),
+                 lowest = last_output_[i] + (change - bound).row(i).minCoeff(),
+                 up = highest - (params_.upper[i] - kept), down = params_.lower[i] + kept - lowest;
     excess[i] = std::max({up, down, 0.0}) / room_[i];
   }
   return excess;
@@ -241,7 +252,8 @@ void PlantTest::leaveUnsure(std::vector<int>& levels) const {
 bool PlantTest::nearLimitUnknown() const {
   for (Index i = 0; i < n_y_; ++i) {
     const auto first = tracks_.begin() + i * n_u_;
-    if (std::none_of(first, first + n_u_, [](const Track& t) { return t.seen; }) &&
+    if (std::none_of(first, first + n_u_,
+                     [](const Track& t) { return t.seen && t.margin < kMostUnsure; }) &&
         std::abs(last_output_[i] - params_.hold[i]) > kHalfway * room_[i])
       return true;
   }
@@ -323,7 +335,7 @@ void PlantTest::setAmplitudes() {
       asked_for = known ? std::min(asked_for, asked) : asked;
       known = true;
     }
-    if (!known) asked_for = kGrowth * amplitude_[j];
+    if (!known) asked_for = kBlindGrowth * amplitude_[j];
     asked_for = std::max(asked_for, kFirstAmplitude * span_[j]);
     amplitude_[j] = std::min({asked_for, most, kGrowth * amplitude_[j]});
   }
@@ -331,6 +343,17 @@ void PlantTest::setAmplitudes() {
 
 /// Are gains and delays known well enough? If not, which input needs more.
 void PlantTest::judge() {
+  const auto unheld = std::find_if(fits_.begin(), fits_.end(),
+                                   [this](const ProcessFit& fit) { return needsLoop(fit); });
+  unheld_ = unheld == fits_.end() ? 0 : unheld_ + 1;
+  if (unheld_ >= kTwice) {
+    const auto i = static_cast<std::size_t>(unheld - fits_.begin());
+    end_ = TestEnd::kNeedsLoop;
+    reason_ = record_.info().outputs[i].name +
+              (unheld->kind == ProcessKind::kUnstable ? " is unstable" : " integrates") +
+              ": the loop file needs a controller that holds it while it is tested";
+    return;
+  }
   const double Ts = record_.info().sample_time_s;
   double worst = 0.0;
   std::string why;
@@ -345,13 +368,6 @@ void PlantTest::judge() {
   };
   for (Index i = 0; i < n_y_; ++i) {
     const ProcessFit& fit = fits_[static_cast<std::size_t>(i)];
-    if (!params_.closed && fit.kind != ProcessKind::kStable && rows() >= 2 * kFirstFit) {
-      end_ = TestEnd::kNeedsLoop;
-      reason_ = record_.info().outputs[static_cast<std::size_t>(i)].name +
-                (fit.kind == ProcessKind::kUnstable ? " is unstable" : " integrates") +
-                ": the loop file needs a controller that holds it while it is tested";
-      return;
-    }
     double largest = 0.0;
     for (Index j = 0; j < n_u_; ++j)
       largest = std::max(
@@ -367,7 +383,7 @@ void PlantTest::judge() {
   }
   const bool long_enough =
       settling_ > 0.0 && static_cast<double>(rows()) * Ts >= kSettlings * settling_;
-  enough_ = worst <= 1.0 && long_enough ? enough_ + 1 : 0;
+  enough_ = worst <= 1.0 && long_enough && unheld_ == 0 ? enough_ + 1 : 0;
   if (tested_ == 0) {
     reason_ = why;
     if (enough_ < kTwice) return;
@@ -377,6 +393,15 @@ void PlantTest::judge() {
     std::fill(level_.begin(), level_.end(), 0);
   }
   if (knowsDisturbances()) end_ = TestEnd::kEnough;
+}
+
+/// A slow load looks like an integrator while gains are unsure.
+bool PlantTest::needsLoop(const ProcessFit& fit) const {
+  return !params_.closed && fit.kind != ProcessKind::kStable && rows() >= 2 * kFirstFit &&
+         std::any_of(fit.elements.begin(), fit.elements.begin() + n_u_,
+                     [](const ElementEstimate& e) {
+                       return e.seen && e.gain_bound < kMostUnsure * std::abs(e.element.gain);
+                     });
 }
 
 /// Each measured disturbance was seen to act on an output.

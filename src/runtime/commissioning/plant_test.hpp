@@ -62,6 +62,7 @@ class PlantTest {
   void know();
   void judge();
   bool knowsDisturbances() const;
+  bool needsLoop(const ProcessFit& fit) const;
   void setAmplitudes();
   Vector excess(const std::vector<int>& levels) const;
   void leaveUnsure(std::vector<int>& levels) const;
@@ -81,21 +82,21 @@ class PlantTest {
     SampledElement sampled;
     std::vector<double> a;  // whole denominator
     std::vector<double> w;
-    double margin{};  // by which its gain may be larger
+    double margin{};  // bound of its gain, in parts of it
     double rest{};    // of the input
     /// w(k), behind w(k - 1) and those before it, of which `before` has the last ones; input(k):
     /// from `rest`.
     template <typename Input>
     double next(Eigen::Index k, const std::vector<double>& before, const Input& input) const;
   };
-  std::vector<Track> tracks_;  // [output * n_u + input]
-  std::vector<Matrix> ahead_;  // [input * 3 + level + 1]: n_y H changes
+  std::vector<Track> tracks_;          // [output * n_u + input]
+  std::vector<Matrix> ahead_, bound_;  // [input * 3 + level + 1]: n_y H changes
   Vector amplitude_, span_, sent_, last_output_, room_;
   std::vector<int> level_, left_;
   std::mt19937_64 engine_;
   std::uint64_t turned_{};
   double settling_{}, dead_time_{};  // [s], longest of what is known
-  int enough_{};
+  int enough_{}, unheld_{};          // fits in a row that say so
   TestEnd end_{TestEnd::kNone};
   std::string reason_;
 };
