@@ -56,7 +56,8 @@ Outcome tested(const Plant& plant, std::uint64_t seed) {
   p.upper = Vector::Constant(n_y, kLimit);
   p.lower = -p.upper;
   p.hold = Vector::Zero(n_y);
-  p.noise = p.deviation = Vector::Constant(n_y, plant.noise);
+  p.noise = Vector::Constant(n_y, plant.noise);
+  p.deviation.resize(n_y);
   p.start_input = Vector::Zero(n_u);
   p.closed = static_cast<bool>(plant.control);
   p.most_rows = plant.rows;
@@ -68,7 +69,8 @@ Outcome tested(const Plant& plant, std::uint64_t seed) {
   std::vector<std::vector<double>> x(plant.lags.size(),
                                      std::vector<double>(static_cast<std::size_t>(n_u), 0.0));
   Vector y(n_y);
-  const auto look = [&](Index k) {
+  Measurement now;
+  const auto measure = [&](Index k) {
     for (Index i = 0; i < n_y; ++i) {
       y[i] = plant.load(k, i);
       for (Index j = 0; j < n_u; ++j) {
@@ -83,10 +85,6 @@ Outcome tested(const Plant& plant, std::uint64_t seed) {
         y[i] += x[a][b];
       }
     }
-  };
-  Measurement now;
-  const auto measure = [&](Index k) {
-    look(k);
     now.header.step = static_cast<std::uint32_t>(k);
     now.outputs = y.unaryExpr([&](double value) { return value + normal(engine); });
     now.disturbances.resize(0);

@@ -89,8 +89,8 @@ class PlantTest {
     template <typename Input>
     double next(Eigen::Index k, const std::vector<double>& before, const Input& input) const;
   };
-  std::vector<Track> tracks_;          // [output * n_u + input]
-  std::vector<Matrix> ahead_, bound_;  // [input * 3 + level + 1]: n_y H changes
+  std::vector<Track> tracks_;  // [output * n_u + input]
+  std::vector<Matrix> ahead_;  // [input * 3 + level + 1]: n_y H changes
   Vector amplitude_, span_, sent_, last_output_, room_;
   std::vector<int> level_, left_;
   std::mt19937_64 engine_;
