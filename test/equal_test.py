@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xmlrpc.client
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "test" / "ros"))
@@ -81,8 +82,8 @@ def environment():
             "FMBPC_PLUGIN_PATH": os.environ.get("FMBPC_TEST_PLUGINS", str(TOP / "build" / "test" / "plugins"))}
 
 
-def launch(folder, loop, sets, pace, speedup):
-    port = ring.free_port()
+def launch(folder, loop, sets, pace, speedup, port=None):
+    port = port or ring.free_port()
     done = subprocess.run(
         ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
                    f"speedup:={speedup}", f"out:={folder}", "draw:=false"]),
@@ -112,10 +113,10 @@ class Equal(unittest.TestCase):
     def compare(self, name):
         self.compare_case(*CASES[name])
 
-    def compare_case(self, loop, steps, sets, pace, speedup):
+    def compare_case(self, loop, steps, sets, pace, speedup, port=None):
         with tempfile.TemporaryDirectory() as folder:
             topics, process = os.path.join(folder, "over topics"), os.path.join(folder, "process")
-            text = launch(topics, loop, sets, pace, speedup)
+            text = launch(topics, loop, sets, pace, speedup, port)
             self.assertTrue(os.path.exists(os.path.join(topics, "summary.json")), text[-3000:])
             tool("run", loop, "--no-plot", "--out", process, *[word for s in sets for word in ("--set", s)])
             late = 0
@@ -143,6 +144,17 @@ class Equal(unittest.TestCase):
         print(f"realtime: {same - 1} of {steps + 1} rows compared, {len(late)} actions too late, "
               f"{len(alone)} without the optimizer")
         return len(late)
+
+    def test_a_listener_that_died_unsaid_costs_no_sample(self):
+        """Every node waits for it before it is ready, and none while another waits for its answer."""
+        port = ring.free_port()
+        core = subprocess.Popen(ring.tied(["rosmaster", "--core", "-p", port]), stdout=subprocess.DEVNULL)
+        self.addCleanup(ring.killed, core)
+        master = xmlrpc.client.ServerProxy(f"http://localhost:{port}")
+        ring.wait_until(lambda: ring.answers(master), "the master")
+        for topic in ("base_action", "control_action", "solver_report", "measurement", "predictive_action"):
+            master.registerSubscriber("/died", f"/{topic}", "*", "http://localhost:1")
+        self.compare_case(*CASES["paced"], port=port)
 
     def test_a_setpoint_and_an_offset_clamped_are_events_in_both_ways(self):
         self.assertEqual([("disturbance_clamped", "T_in", 60, 300), ("setpoint_clamped", "T", 120, 240)],

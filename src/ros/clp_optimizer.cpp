@@ -23,7 +23,7 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
                            const LoopFile& loop)
     : Node(node, loop, private_node.getNamespace()),
       session_(makeOptimizerSession(loop)),
-      ready_(node, loop, name()),
+      ready_(node, loop, name(), [this] { return plant_.open() && listeners_.connected(); }),
       signals_(node),
       plant_(loop),
       action_(node, topics::kControlAction, comeback_, audienceOf(node, authority())),
@@ -51,7 +51,6 @@ void ClpOptimizer::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
     if (!plant_.introduce(*msg)) return;
     session_.announce(plant_.runId());
-    ready_.announce();
   });
 }
 

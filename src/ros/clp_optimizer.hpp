@@ -28,7 +28,7 @@
 
 namespace fpc {
 
-/// Ready when a fitting plant has introduced itself.
+/// Ready when a fitting plant has introduced itself and everybody who listens is connected.
 class ClpOptimizer : public Node {
  public:
   static std::string idleReason(const LoopFile& loop);

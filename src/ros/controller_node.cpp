@@ -31,7 +31,11 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       session_(makeControllerSession(loop)),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
       desk_(node, loop, name(), session_, [this] { answerParked(); }),
-      ready_(node, loop, name()),
+      ready_(node, loop, name(),
+             [this] {
+               return plant_.open() && session_.ready() && links_.missing().empty() &&
+                      listeners_.connected();
+             }),
       signals_(node),
       plant_(loop),
       base_(node, actionTopic(loop, private_node), comeback_, audienceOf(node, authority())),
@@ -88,11 +92,6 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
     listeners_.alsoHear(standin_->hearing());
   }
   advertiseSignals();
-  if (!links_.inbox().empty())
-    link_timer_ = guardedTimer(node, kLookAgain, "links", [this] {
-                    announceIfReady();
-                    if (ready_.announced()) link_timer_.stop();
-                  }).started();
 }
 
 // Early, so that whoever listens misses nothing; what depends on a model follows with it.
@@ -110,7 +109,6 @@ void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
     if (!plant_.introduce(*msg)) return;
     session_.announce(plant_.runId());
     inbox_.announce(plant_.runId());
-    announceIfReady();
     answerParked();
   });
 }
@@ -124,7 +122,6 @@ void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
       return refuseModel(error.what());
     }
     useModels(nextSample());
-    announceIfReady();
     answerParked();
   });
 }
@@ -190,10 +187,6 @@ void ControllerNode::refuseModel(const std::string& why) {
   model_problem_ = why;
   model_refused_s_ = steadyNow();
   refuse(topics::kFuzzyModel, why);
-}
-
-void ControllerNode::announceIfReady() {
-  if (plant_.open() && session_.ready() && links_.missing().empty()) ready_.announce();
 }
 
 void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {

@@ -68,7 +68,6 @@ class ControllerNode : public Node {
   bool onAdapt(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void onTargets(const fmbpc::Targets::ConstPtr& msg);
   bool hasTargets(const StepHeader& sample);
-  void announceIfReady();
   void useModels(const StepHeader& next);
   StepHeader nextSample() const;
   bool mayAnswer(const Measurement& measurement);
@@ -119,7 +118,7 @@ class ControllerNode : public Node {
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       identified_subscriber_, setpoint_subscriber_, targets_subscriber_;
   ros::ServiceServer manual_, manual_input_, hold_, adapt_, candidate_;
-  SteadyTimer parked_timer_, link_timer_;
+  SteadyTimer parked_timer_;
   SettingsServer settings_;
   SummaryListener summary_;
   RateLimit commands_;

@@ -51,7 +51,7 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       out_(private_node.param<std::string>("out", "")),
-      ready_(node, loop, name()),
+      ready_(node, loop, name(), [this] { return isReady(); }),
       plant_(loop),
       session_(loop),
       duty_(loop.ring.pace == Pace::kLockstep),
@@ -81,7 +81,6 @@ void FuzzyIdentifier::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
     if (!plant_.introduce(*msg)) return;
     session_.announce(plant_.runId(), steadyNow());
     publishStartModel();
-    announceIfReady();
     for (const auto& measurement : std::exchange(unannounced_, {})) onMeasurement(measurement);
   });
 }
@@ -94,7 +93,6 @@ void FuzzyIdentifier::onModelKept(const fmbpc::FuzzyModel::ConstPtr& msg) {
       ROS_INFO("fuzzy_identifier: model %s of this run restored", msg->name.c_str());
     }
     publishStartModel();
-    announceIfReady();
   });
 }
 
@@ -110,10 +108,10 @@ void FuzzyIdentifier::publishStartModel() {
   }
 }
 
-void FuzzyIdentifier::announceIfReady() {
+bool FuzzyIdentifier::isReady() const {
   const bool has_model = session_.published() > 0 || !loop_.has_model;
   const bool listens = !loop_.has_identify || measurement_subscriber_.getNumPublishers() > 0;
-  if (plant_.open() && has_model && listens) ready_.announce();
+  return plant_.open() && has_model && listens;
 }
 
 void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
@@ -195,7 +193,6 @@ void FuzzyIdentifier::onCancel(Server::GoalHandle goal) {
 
 void FuzzyIdentifier::poll() {
   publishStartModel();
-  if (!ready_.announced()) announceIfReady();
   if (!worker_.busy()) return;
   // The end first, so that the last progress is not told after it.
   const auto outcome = worker_.outcome();

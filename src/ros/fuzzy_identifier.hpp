@@ -45,7 +45,7 @@ class FuzzyIdentifier : public Node {
   void onCancel(Server::GoalHandle goal);
   void poll();
   void publishStartModel();
-  void announceIfReady();
+  bool isReady() const;
   void begin(IdentificationJob job, bool publish);
   void finishJob(const IdentificationWorker::Outcome& outcome);
   void conclude(const IdentificationWorker::Outcome& outcome, fmbpc::IdentifyModelResult& result);

@@ -24,6 +24,9 @@ Counts countsOf(XmlRpc::XmlRpcValue& topics) {
 
 }  // namespace
 
+ListenerGate::ListenerGate(std::vector<ros::Publisher> publishers)
+    : publishers_(std::move(publishers)), wait_(kPatience) {}
+
 /// True if the master does not answer.
 bool ListenerGate::allConnected() const {
   XmlRpc::XmlRpcValue request, response, state;
@@ -39,12 +42,13 @@ bool ListenerGate::allConnected() const {
          });
 }
 
-bool ListenerGate::open() {
-  if (open_) return true;
+bool ListenerGate::connected() {
   const double now_s = steadyNow();
-  if (deadline_s_ < 0) deadline_s_ = now_s + kPatience;
-  open_ = allConnected() || now_s >= deadline_s_;
-  return open_;
+  if (!wait_.isOpen()) wait_.begin(now_s);
+  open_ = open_ || wait_.isOver(now_s);
+  if (!open_ && !allConnected()) return false;
+  wait_.end();
+  return true;
 }
 
 }  // namespace fpc

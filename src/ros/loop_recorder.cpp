@@ -20,7 +20,6 @@ constexpr double kRecorderPoll = 0.05;  // [s] of wall time
 constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
 constexpr double kLastMessages = 0.1;   // [s] after the last sample, for the bag
 constexpr double kHeard = 1.0;          // [s] in which a run under way is heard of
-constexpr double kLookForRing = 0.01;   // [s] of wall time, at who is there
 constexpr double kSettled = 0.1;        // [s]: a connection is complete at both ends a moment later
 constexpr double kLookForTopics = 0.1, kLookForMore = 0.5;  // [s], until ready and then
 constexpr int kLate = 20;                                   // polls of 0.05 s
@@ -41,6 +40,7 @@ void LoopRecorder::listen(ros::NodeHandle& node, const char* topic, Handler<Msg>
         if (bag_) bag_->take(topic, event);
         (this->*handler)(*event.getMessage(), event.getPublisherName());
       }));
+  publishers_.alsoHear(ring_.back());
 }
 
 LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node,
@@ -55,15 +55,13 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       session_(
           recordLayout(loop),
           [this](std::uint32_t step, const SampleRecord& sample) { store_->put(step, sample); }),
-      ready_(node, loop, name()),
+      ready_(node, loop, name(), [this] { return isConnected(); }),
       plant_(loop),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
       sample_recorded_(
           node.advertise<fmbpc::Recorded>(topics::kSampleRecorded, queueOf(ListenerKind::kPeer))),
       end_(node),
       poll_timer_(guardedTimer(node, kRecorderPoll, "poll", [this] { poll(); }).started()),
-      ready_timer_(
-          guardedTimer(node, kLookForRing, "ready", [this] { announceIfConnected(); }).started()),
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {
@@ -157,18 +155,17 @@ void LoopRecorder::giveUp() {
 
 // A plant of ours sends sample 0 only when its own ends of the connections are complete, and so do
 // the others their first answers (ListenerGate); for somebody else's plant it has to be waited for.
-void LoopRecorder::announceIfConnected() {
+bool LoopRecorder::isConnected() {
   const bool connected = std::all_of(ring_.begin(), ring_.end(),
                                      [](const auto& s) { return s.getNumPublishers() > 0; });
-  if (!connected || !plant_.open() || !unusable_.empty() || (bag_ && !bag_ready_)) {
+  if (!connected || !plant_.open() || !unusable_.empty() || (bag_ && !bag_ready_) ||
+      !publishers_.connected()) {
     connected_s_ = -1;
-    return;
+    return false;
   }
   if (connected_s_ < 0) connected_s_ = steadyNow();
   const bool gated = !loop_.external_plant || loop_.gateway.enabled();
-  if (!gated && steadyNow() - connected_s_ < kSettled) return;
-  ready_.announce();
-  ready_timer_.stop();
+  return gated || steadyNow() - connected_s_ >= kSettled;
 }
 
 void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo& msg, const std::string& publisher) {

@@ -17,6 +17,7 @@
 #include "config/loop_file.hpp"
 #include "ros/bag_writer.hpp"
 #include "ros/health_reporter.hpp"
+#include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
@@ -59,7 +60,7 @@ class LoopRecorder : public Node {
   void poll();
   void giveUp();
   void watchGaps();
-  void announceIfConnected();
+  bool isConnected();
   void beginRun(std::uint64_t run_id);
   template <typename Msg, typename Take>
   void record(const char* topic, const Msg& msg, Take take);
@@ -98,8 +99,9 @@ class LoopRecorder : public Node {
 
   ros::Publisher recorded_, sample_recorded_;
   RunEndPublisher end_;
-  std::vector<ros::Subscriber> ring_;  // every publisher that must be connected
-  SteadyTimer poll_timer_, ready_timer_;
+  std::vector<ros::Subscriber> ring_;  // every topic that must have a publisher
+  ListenerGate publishers_{{}};        // all that the master knows of them
+  SteadyTimer poll_timer_;
   HealthReporter health_;
 };
 

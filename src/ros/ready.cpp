@@ -8,17 +8,27 @@
 #include "ros/topics.hpp"
 
 namespace fpc {
+namespace {
 
-ReadyPublisher::ReadyPublisher(ros::NodeHandle node, const LoopFile& loop, std::string name)
-    : name_(std::move(name)),
+constexpr double kLook = 0.01;  // [s] of wall time
+
+}  // namespace
+
+ReadyPublisher::ReadyPublisher(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                               std::function<bool()> ready)
+    : Node(node, loop, std::move(name)),
+      is_ready_(std::move(ready)),
       loop_digest_(textHash(loop.resolved)),
-      publisher_(node.advertise<fmbpc::NodeReady>(topics::kReady, 1, true)) {}
+      publisher_(node.advertise<fmbpc::NodeReady>(topics::kReady, 1, true)),
+      timer_(guardedTimer(node, kLook, topics::kReady, [this] {
+               if (is_ready_()) announce();
+             }).started()) {}
 
 void ReadyPublisher::announce() {
-  if (announced_) return;
+  timer_.stop();
   announced_ = true;
   fmbpc::NodeReady msg;
-  msg.node = name_;
+  msg.node = name();
   msg.loop_digest = loop_digest_;
   publisher_.publish(msg);
   ROS_INFO("%s: ready", msg.node.c_str());

@@ -4,26 +4,32 @@
 #include <fmbpc/NodeReady.h>
 #include <ros/ros.h>
 
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "ros/node.hpp"
+#include "ros/steady_timer.hpp"
 
 namespace fpc {
 
-/// Says "ready", once, latched.
-class ReadyPublisher {
+/// Says "ready", once, latched, as soon as its node is.
+class ReadyPublisher : public Node {
  public:
-  /// `name`: of the node that is ready.
-  ReadyPublisher(ros::NodeHandle node, const LoopFile& loop, std::string name);
-  void announce();
+  /// `name`: of the node; `ready`: asked again and again until it is.
+  ReadyPublisher(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                 std::function<bool()> ready);
   bool announced() const { return announced_; }
 
  private:
-  std::string name_, loop_digest_;
+  void announce();
+
+  std::function<bool()> is_ready_;
+  std::string loop_digest_;
   ros::Publisher publisher_;
   bool announced_{false};
+  SteadyTimer timer_;
 };
 
 /// Listens for the nodes named (relative to the namespace of `node`); each speaks for itself. Who

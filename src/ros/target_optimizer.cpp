@@ -25,7 +25,8 @@ TargetOptimizer::TargetOptimizer(ros::NodeHandle node, const ros::NodeHandle& pr
       loop_(loop),
       session_(makeTargetSession(loop)),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
-      ready_(node, loop, name()),
+      ready_(node, loop, name(),
+             [this] { return plant_.open() && session_.ready() && listeners_.connected(); }),
       signals_(node),
       plant_(loop),
       targets_(node, topics::kTargets, comeback_, audienceOf(node, authority())),
@@ -55,7 +56,6 @@ void TargetOptimizer::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
     if (!plant_.introduce(*msg)) return;
     session_.announce(plant_.runId());
     inbox_.announce(plant_.runId());
-    if (session_.ready()) ready_.announce();
     answerParked();
   });
 }
@@ -66,7 +66,6 @@ void TargetOptimizer::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
     StepHeader next = session_.answer().header;
     ++next.step;
     useModels(session_.counts().accepted > 0 ? next : StepHeader{});
-    if (plant_.open() && session_.ready()) ready_.announce();
     answerParked();
   });
 }
