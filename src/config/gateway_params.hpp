@@ -39,15 +39,14 @@ struct GatewayTag {
 struct ModbusParams {
   std::string host{"127.0.0.1"};
   int port{502};
-  int unit{1};              ///< unit identifier of the server
-  double poll_s{0.2};       ///< all registers are read so often
-  double timeout_s{0.5};    ///< of one answer
-  double reconnect_s{1.0};  ///< between two attempts
-  ModbusBit automatic;      ///< coil, written: 1 while the loop has the inputs
-  ModbusBit remote;         ///< coil or discrete input, read: 1 while the plant takes commands
-  int owner{-1};            ///< holding register: the word of the master that leads, 0: nobody
-  int heartbeat_in{-1};     ///< holding register that the plant counts up
-  int heartbeat_out{-1};    ///< holding register that the gateway counts up
+  int unit{1};            ///< unit identifier of the server
+  double poll_s{0.2};     ///< all registers are read so often
+  double timeout_s{0.5};  ///< of one answer
+  ModbusBit automatic;    ///< coil, written: 1 while the loop has the inputs
+  ModbusBit remote;       ///< coil or discrete input, read: 1 while the plant takes commands
+  int owner{-1};          ///< holding register: the word of the master that leads, 0: nobody
+  int heartbeat_in{-1};   ///< holding register that the plant counts up
+  int heartbeat_out{-1};  ///< holding register that the gateway counts up
 };
 
 struct GatewayParams {

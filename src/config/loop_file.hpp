@@ -134,8 +134,9 @@ struct LoopFile {
   StuckParams stuck;            ///< section plausibility: inputs that do not follow
   EstimatorParams estimator;    ///< around a law with a model; without outputs: none
   StandstillParams standstill;  ///< around any law; without signals: none
-  GatewayParams gateway;        ///< of an external plant
-  CandidateFile candidate;      ///< beside the law
+  std::shared_ptr<const ControllerConfig> standstill_fallback;  ///< null: none
+  GatewayParams gateway;                                        ///< of an external plant
+  CandidateFile candidate;                                      ///< beside the law
   bool has_clp{false};
   ClpParams clp;
   TargetParams targets;

@@ -33,6 +33,8 @@ void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readController(YamlSection& root, LoopFile& loop);
+/// Key `fallback`: a controller that acts in place of another; null: none.
+std::shared_ptr<const ControllerConfig> readFallback(YamlSection& section, const LoopFile& loop);
 void readTargets(YamlSection& root, LoopFile& loop);
 /// Keys separator, decimal, missing_values.
 void readCsvFormat(YamlSection& section, CsvFormat& format);

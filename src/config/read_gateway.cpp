@@ -91,7 +91,6 @@ void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   section.integer("unit", modbus.unit, 0, 255);
   section.number("poll_s", modbus.poll_s, {1e-3, 3600.0});
   section.number("timeout_s", modbus.timeout_s, {1e-3, 3600.0});
-  section.number("reconnect_s", modbus.reconnect_s, {1e-3, 3600.0});
   readOption(section, "word_order", order);
   readBit(section, "automatic_coil", modbus.automatic);
   readBit(section, "remote_coil", modbus.remote);

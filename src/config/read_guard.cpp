@@ -4,6 +4,15 @@
 
 namespace fpc {
 
+std::shared_ptr<const ControllerConfig> readFallback(YamlSection& section, const LoopFile& loop) {
+  bool off = false;
+  YamlSection fallback = section.sectionOrOff("fallback", off);
+  if (!section.has("fallback") || off) return nullptr;
+  std::shared_ptr<const ControllerConfig> read = readController(fallback, controllerContext(loop));
+  if (read->type().open_loop) fallback.fail("type", "a controller that follows setpoints");
+  return read;
+}
+
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   bool off = false;
   YamlSection section = root.sectionOrOff("guard", off);
@@ -22,13 +31,7 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.number("lock_step", guard.lock_step, {0.0, 1.0, true});
   section.integer("growing_swings", guard.growing_swings, 0);
   guard.lock_outputs = loop.controller->signalUse(controllerContext(loop)).followed;
-  bool no_fallback = false;
-  YamlSection fallback = section.sectionOrOff("fallback", no_fallback);
-  if (section.has("fallback") && !no_fallback) {
-    loop.fallback = readController(fallback, controllerContext(loop));
-    if (loop.fallback->type().open_loop)
-      fallback.fail("type", "a controller that follows setpoints");
-  }
+  loop.fallback = readFallback(section, loop);
   checked(section, [&] {
     guard.validate(static_cast<Eigen::Index>(names.outputs.size()), loop.fallback != nullptr);
   });

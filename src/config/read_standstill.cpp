@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index;
 
 struct SignalNames {
-  std::vector<std::string> outputs, inputs, disturbances;
+  std::vector<std::string> outputs, disturbances;
 };
 
 void readWatched(YamlSection& section, const std::vector<std::string>& names, bool outputs,
@@ -58,33 +58,13 @@ void setNoise(const LoopFile& loop, const SignalNames& names, std::vector<Watche
     signal.noise_std = std[signal.is_output ? signal.place : n_y + signal.place];
 }
 
-/// A term of the fallback: what is measured adds to an input.
-AffineTerm readTerm(YamlSection& item, const SignalNames& names, const Vector& nominal) {
-  AffineTerm term;
-  term.target = indexByName(item, "input", names.inputs);
-  std::vector<std::string> of;
-  const auto& known = names.disturbances;
-  item.subset("of", of, known);
-  if (of.empty()) item.fail("of", "a list of " + join(known));
-  for (const auto& name : of) {
-    term.disturbances.push_back(std::find(known.begin(), known.end(), name) - known.begin());
-    term.about *= nominal[term.disturbances.back()];
-  }
-  if (term.about == 0.0) item.fail("of", "disturbances whose nominal value is not 0");
-  need(item, "gain", "a number");
-  item.number("gain", term.gain, kFinite);
-  item.finish();
-  return term;
-}
-
 }  // namespace
 
 void readStandstill(YamlSection& root, LoopFile& loop) {
   bool off = false;
   YamlSection section = root.sectionOrOff("standstill", off);
   const PlantInfo& plant = loop.plant_info;
-  const SignalNames names{namesOf(plant.outputs), namesOf(plant.inputs),
-                          namesOf(plant.disturbances)};
+  const SignalNames names{namesOf(plant.outputs), namesOf(plant.disturbances)};
   StandstillParams& params = loop.standstill;
   double window_h = 6.0;
   section.number("window_h", window_h, kFinitePositive);
@@ -101,9 +81,9 @@ void readStandstill(YamlSection& root, LoopFile& loop) {
   setNoise(loop, names, params.signals);
   params.usual = loop.disturbance_nominal;
   params.fallback = loop.simulation.actuator.initial;
-  section.byName("fallback", params.fallback, names.inputs, kFinite);
-  for (auto& item : section.list("fallback_plan"))
-    params.fallback_plan.push_back(readTerm(item, names, loop.disturbance_nominal));
+  loop.standstill_fallback = readFallback(section, loop);
+  if (loop.standstill_fallback && loop.standstill_fallback->type().needs_model)
+    section.fail("fallback.type", "a controller without a model, which no frozen output misleads");
   section.finish();
 }
 

@@ -8,8 +8,9 @@
 namespace fpc {
 namespace {
 
-constexpr double kRenew = 0.1;  // [s] between two renewals of what is held already
-constexpr double kShown = 2.0;  // [s] that a coil which somebody else has written is told
+constexpr double kReconnectPolls = 5.0;  // poll times between two attempts
+constexpr double kRenew = 0.1;           // [s] between two renewals of what is held already
+constexpr double kShown = 2.0;           // [s] that a coil which somebody else has written is told
 
 std::chrono::duration<double> seconds(double value) { return std::chrono::duration<double>(value); }
 
@@ -116,7 +117,7 @@ void ModbusField::work() {
     }
     lock.lock();
     shown_ = seen_;
-    const double pause_s = link ? params_.modbus.poll_s : params_.modbus.reconnect_s;
+    const double pause_s = (link ? 1.0 : kReconnectPolls) * params_.modbus.poll_s;
     const std::uint64_t told = wish.number;
     if (!last)
       wake_.wait_for(lock, seconds(pause_s),

@@ -31,8 +31,10 @@ std::unique_ptr<Controller> makeEstimating(const LoopFile& loop) {
 std::unique_ptr<Controller> makeController(const LoopFile& loop) {
   std::unique_ptr<Controller> law = makeEstimating(loop);
   if (loop.standstill.signals.empty()) return law;
-  return std::make_unique<StandstillWatch>(std::move(law), loop.standstill,
-                                           loop.simulation.actuator.limits, loop.plant_info);
+  const auto& fallback = loop.standstill_fallback;
+  return std::make_unique<StandstillWatch>(
+      std::move(law), fallback ? fallback->make(controllerContext(loop)) : nullptr, loop.standstill,
+      loop.simulation.actuator.limits, loop.plant_info);
 }
 
 }  // namespace

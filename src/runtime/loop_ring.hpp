@@ -42,6 +42,7 @@ class LoopRing {
   const ControllerAnswer& answered() const { return controller_.answer(); }
   const Measurement& measurement() const { return simulation_.measurement(); }
   const LoopFile& loop() const { return loop_; }
+  const RunRecord& recorded() const { return record_; }  ///< what is complete of it so far
   RunRecord take();
 
  private:

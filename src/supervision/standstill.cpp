@@ -41,12 +41,14 @@ double mostVariance(Index n) { return 1.0 + 3.0 * std::sqrt(2.0 / static_cast<do
 
 }  // namespace
 
-StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillParams params,
+StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside,
+                                 std::unique_ptr<Controller> fallback, StandstillParams params,
                                  InputLimits limits, PlantInfo plant)
     : ControllerAround(std::move(inside), "standstill"),
       params_(std::move(params)),
       limits_(std::move(limits)),
       n_y_(static_cast<Index>(plant.outputs.size())),
+      fallback_(std::move(fallback)),
       still_(params_.signals.size(), false),
       stood_at_(params_.signals.size(), 0.0),
       allowed_(params_.signals.size(), 0.0),
@@ -59,7 +61,6 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
   limits_.validate(n_u);
   window_ = SignalWindow(n_y_ + n_d + n_u,
                          std::max(params_.window_samples, params_.noise_window_samples));
-  plan_ = AffineLaw(params_.fallback_plan, n_u);
   for (const WatchedSignal& signal : params_.signals)
     texts_.push_back(signal.name + (signal.is_output ? " stands still: the fallback acts"
                                                      : " stands still: its usual value is used"));
@@ -160,10 +161,18 @@ void StandstillWatch::watch(const Measurement& now) {
   for (std::size_t i = 0; i < still_.size(); ++i) judge(i, valueOf(now, params_.signals[i]));
 }
 
+/// As at the start of a run: the input has followed a frozen output for the whole window.
+void StandstillWatch::beginFallback() {
+  Measurement start = seen_;
+  start.header.step = 0;
+  fallback_->reset(start);
+}
+
 void StandstillWatch::fallBack(const Measurement& now, const SetpointSource& setpoint,
                                ControllerOutput& output) {
-  output.input = params_.fallback;
-  if (!plan_.empty()) output.input += plan_.follow(seen_.disturbances);
+  if (!away_ && fallback_) beginFallback();
+  if (fallback_) fallback_->step(seen_, setpoint, output);
+  if (!fallback_ || !output.ok || !output.input.allFinite()) output.input = params_.fallback;
   limits_.clip(output.input, now.input_applied);
   output.source = ActionSource::kFallback;
   output.reference = setpoint.present();
@@ -183,11 +192,11 @@ void StandstillWatch::step(const Measurement& now, const SetpointSource& setpoin
     blind = blind || signal.is_output;
   }
   if (away_ && !blind) inside_->reset(seen_);
-  away_ = blind;
   if (blind)
     fallBack(now, setpoint, output);
   else
     inside_->step(seen_, setpoint, output);
+  away_ = blind;
   for (std::size_t i = 0; i < still_.size(); ++i)
     if (still_[i])
       output.events.add(

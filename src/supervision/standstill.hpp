@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "control/affine_law.hpp"
 #include "control/controller_around.hpp"
 #include "supervision/signal_window.hpp"
 #include "supervision/standstill_params.hpp"
@@ -24,14 +23,14 @@ namespace fpc {
 /// the largest value so far may be limited there, as a flow over a weir: it does not stand still.
 /// Meanwhile
 /// - a disturbance has its usual value for the law, which goes on;
-/// - an output makes the fallback act (source fallback, no prediction) inside the limits; the law
-///   is reset, bumplessly, when the output is back.
+/// - an output makes the fallback act (source fallback, no prediction) inside the limits, from its
+///   start (a PI from its bias); the law is reset, bumplessly, when the output is back.
 /// signal_frozen says which signal. Otherwise the law's answers pass untouched.
 class StandstillWatch final : public ControllerAround {
  public:
-  /// @throws InputError naming the field.
-  StandstillWatch(std::unique_ptr<Controller> inside, StandstillParams params, InputLimits limits,
-                  PlantInfo plant);
+  /// `fallback`: needs no model; none: params.fallback. @throws InputError naming the field.
+  StandstillWatch(std::unique_ptr<Controller> inside, std::unique_ptr<Controller> fallback,
+                  StandstillParams params, InputLimits limits, PlantInfo plant);
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
@@ -47,13 +46,14 @@ class StandstillWatch final : public ControllerAround {
   bool meanHasMoved(std::size_t signal) const;
   void judge(std::size_t signal, double value);
   void watch(const Measurement& now);
+  void beginFallback();
   void fallBack(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
 
   StandstillParams params_;
   InputLimits limits_;
   Eigen::Index n_y_;
   SignalWindow window_;
-  AffineLaw plan_;
+  std::unique_ptr<Controller> fallback_;
   Measurement seen_;
   std::vector<bool> still_;              // by watched signal
   std::vector<double> stood_at_;         // the value at which each stands ...

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "control/affine_law.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
@@ -24,8 +23,7 @@ struct StandstillParams {
   int window_samples{24};
   int noise_window_samples{96};  ///< of signals with noise, in eight blocks
   Vector usual;                  ///< n_d, the law's value of a disturbance that stands still
-  Vector fallback;               ///< n_u, the input while an output stands still ...
-  std::vector<AffineTerm> fallback_plan;  ///< ... and what the other signals add to it
+  Vector fallback;  ///< n_u, the input while an output stands still and no controller acts
   /// @throws InputError naming standstill.KEY.
   void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d) const;
 };

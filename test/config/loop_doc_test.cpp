@@ -58,7 +58,7 @@ std::string general(std::string path) {
       R"(controller\.inputs\[\]|controller\.observer\.estimated|report\.consumption|gateway\.tags|targets\.outputs|targets\.inputs|plausibility\.signals|standstill\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!step_s$)\w+)"), "sensors.NAME");
-  path = std::regex_replace(path, std::regex(R"(^guard\.fallback\.)"), "controller.");
+  path = std::regex_replace(path, std::regex(R"(^(guard|standstill)\.fallback\.)"), "controller.");
   path = std::regex_replace(path, std::regex(R"(^targets\.observer\.)"), "controller.observer.");
   path = std::regex_replace(path, std::regex(R"(^setpoint\.commands)"), "disturbance.commands");
   path =
@@ -165,7 +165,8 @@ std::set<std::string> readerKeys() {
     if (section.size() > 2 && section.substr(section.size() - 2) == "[]")
       keys.erase(section.substr(0, section.size() - 2));
   }
-  for (const char* either : {"plant.outputs", "guard.fallback", "plant.model", "plant.ranges.NAME"})
+  for (const char* either : {"plant.outputs", "guard.fallback", "standstill.fallback",
+                             "plant.model", "plant.ranges.NAME"})
     keys.insert(either);  // or a mapping
   for (const char* other : {"clp", "disturbance.pattern.channels", "disturbance.csv.channels"})
     keys.erase(other);
@@ -231,11 +232,9 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.swarm.iterations", std::to_string(swarm.iterations)},
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
           {"controller.iterations", std::to_string(law.iterations)},
-          {"controller.forecast_pole", exactText(law.forecast_pole)},
           {"controller.realisation", wordOf(law.realisation)},
           {"controller.delay_steps", std::to_string(law.delay_steps)},
           {"controller.reference_lead_steps", std::to_string(law.reference_lead_steps)},
-          {"controller.offset_gain", exactText(law.offset_gain)},
           {"controller.move_steps", std::to_string(optimal.tuning.move_steps)},
           {"controller.solve", wordOf(optimal.solve)},
           {"controller.disturbance", wordOf(optimal.disturbance)},

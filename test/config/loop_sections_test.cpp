@@ -119,6 +119,7 @@ TEST(LoopSections, WatchesAreHandedOn) {
   EXPECT_EQ(watched.standstill.signals[0].noise_std, 0.0);
   EXPECT_EQ(watched.standstill.noise_window_samples, 4 * watched.standstill.window_samples);
   EXPECT_EQ(watched.standstill.fallback, watched.simulation.actuator.initial);
+  EXPECT_EQ(watched.standstill_fallback, nullptr);
   const LoopFile noisy =
       readLoop("asp_case1_pi_x", {{"standstill.signals.x", "3"},
                                   {"noise.std.x", "4"},

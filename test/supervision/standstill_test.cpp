@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "control/pi/pi.hpp"
 #include "runtime/session_fixture.hpp"
 
 namespace fpc::test_session {
@@ -23,12 +24,14 @@ class Standstill : public testing::Test {
     p.fallback = of({800.0});
     return p;
   }
-  void make(StandstillParams p, double move = kInfinity) {
+  void make(StandstillParams p, double move = kInfinity,
+            std::unique_ptr<Controller> fallback = nullptr) {
     auto owned = std::make_unique<FakeLaw>();
     law = owned.get();
     PlantInfo info = plant();
     info.disturbances.push_back({"s_i", "mg/l", 0, 100});
-    watch = std::make_unique<StandstillWatch>(std::move(owned), std::move(p), limits(move), info);
+    watch = std::make_unique<StandstillWatch>(std::move(owned), std::move(fallback), std::move(p),
+                                              limits(move), info);
     watch->reset(sample(0));
   }
   /// One sample with these values; x never moves.
@@ -97,10 +100,18 @@ TEST_F(Standstill, ADisturbanceThatStandsIsReplacedByItsUsualValue) {
   EXPECT_TRUE(frozen("q_i"));
 }
 
-TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsItsPlan) {
-  StandstillParams p = params();
-  p.fallback_plan = {{0, {0}, 1300.0, 5000.0}};
-  make(p, 100.0);
+/// 800, and 5000 more at twice the usual flow: it does not look at the output.
+std::unique_ptr<Controller> byFlow(const InputLimits& limits, const PlantInfo& plant) {
+  PiLoop loop;
+  loop.bias = 800.0;
+  loop.terms.feedforward.push_back({0, 5000.0 / 1300.0, 1300.0, 0.0, -1});
+  PiParams params;
+  params.loops.push_back(loop);
+  return std::make_unique<PiController>(params, limits, plant);
+}
+
+TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsTheFlow) {
+  make(params(), 100.0, byFlow(limits(100.0), plant()));
   const auto q_i = [](int k) { return k % 2 == 0 ? 1300.0 : 1560.0; };
   for (int k = 0; k < kWindow; ++k) see(58.0, q_i(k));
   double before = applied;
@@ -111,9 +122,18 @@ TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsItsPlan) {
     before = output.input[0];
   }
   EXPECT_EQ(output.source, ActionSource::kFallback);
-  make(p);
+  make(params(), kInfinity, byFlow(limits(kInfinity), plant()));
   for (int k = 0; k < kWindow + 1; ++k) see(58.0, q_i(k));
   EXPECT_NEAR(output.input[0], 1600.0, 1e-9) << "800 + 5000 * 0.2 at the bound";
+}
+
+TEST_F(Standstill, AFallbackWithoutAnAnswerLeavesTheInitialInput) {
+  auto lost = std::make_unique<FakeLaw>();
+  lost->spoil = [](ControllerOutput& o) { o.ok = false; };
+  make(params(), kInfinity, std::move(lost));
+  for (int k = 0; k < kWindow + 1; ++k) see(58.0, 1300.0 + 200.0 * std::sin(k));
+  EXPECT_EQ(output.source, ActionSource::kFallback);
+  EXPECT_EQ(output.input[0], 800.0);
 }
 
 /// Watched with noise of these standard deviations, over 32 samples.

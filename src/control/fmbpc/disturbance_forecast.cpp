@@ -29,7 +29,7 @@ DisturbanceForecast::DisturbanceForecast(Eigen::Index n_d, int horizon_steps, in
       pole_(pole) {
   require(period_steps == 0 || period_steps >= horizon_steps, "controller.forecast_period_h",
           "0, or a time not shorter than controller.horizon_steps");
-  require(pole >= 0.0 && pole <= 1.0, "controller.forecast_pole", "a number from 0 to 1");
+  require(pole >= 0.0 && pole <= 1.0, "pole", "a number from 0 to 1");
 }
 
 void DisturbanceForecast::forget() {

@@ -30,7 +30,6 @@ void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcPara
   section.number("forecast_period_h", period_h, {0.0, 1e4});
   params.forecast_period_steps =
       static_cast<int>(std::lround(period_h * 3600.0 / loop.plant.sample_time_s));
-  section.number("forecast_pole", params.forecast_pole, {0.0, 1.0});
   double memory_h = 0.0;
   section.number("forecast_memory_h", memory_h, {0.0, 1e4});
   params.forecast_memory_steps =
@@ -58,7 +57,6 @@ FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   readOption(section, "realisation", params.realisation);
   section.integer("delay_steps", params.delay_steps, 0, 1000);
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
-  section.number("offset_gain", params.offset_gain, {0.0, 1.0});
   readObserver(section, params.observer, loop, ObserverKey::kEstimated);
   checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
   return params;

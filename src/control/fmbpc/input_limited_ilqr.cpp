@@ -33,6 +33,7 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       P_(n_x_, n_x_),
       PA_(n_x_, n_x_),
       PB_(n_x_, n_u_),
+      KT_(n_x_, n_u_),
       Quu_(n_u_, n_u_),
       Qux_(n_u_, n_x_),
       Qxx_(n_x_, n_x_),
@@ -51,10 +52,12 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       offset_(n_y_),
       disturbances_(model.model().disturbances.size(), N_),
       reference_(n_y_, N_),
+      in_chain_(static_cast<std::size_t>(n_x_)),
       fixed_(static_cast<std::size_t>(n_u_)),
       bounds_(fixed_.size()),
       factor_(n_u_) {
   findPattern();
+  findChains();
   if (linear_) stages_.assign(A_.size(), Stage{P_, Quu_, Qux_, bounds_});
 }
 
@@ -74,6 +77,18 @@ void InputLimitedIlqr::findPattern() {
       }
 }
 
+/// Of linear rules: what is 0 in A is so for ever, as are the inputs behind a dead time.
+void InputLimitedIlqr::narrowPattern(const Matrix& A) {
+  for (std::vector<Eigen::Index>& columns : columns_) columns.clear();
+  for (Eigen::Index j = 0; j < n_x_; ++j) {
+    std::vector<Eigen::Index>& rows = rows_[static_cast<std::size_t>(j)];
+    rows.erase(
+        std::remove_if(rows.begin(), rows.end(), [&](Eigen::Index k) { return A(k, j) == 0.0; }),
+        rows.end());
+    for (const Eigen::Index k : rows) columns_[static_cast<std::size_t>(k)].push_back(j);
+  }
+}
+
 /// A row of A times x; what is 0 in A for ever is left out.
 double InputLimitedIlqr::rowTimes(const Matrix& A, Eigen::Index row, const Vector& x) const {
   double sum = 0.0;
@@ -81,19 +96,54 @@ double InputLimitedIlqr::rowTimes(const Matrix& A, Eigen::Index row, const Vecto
   return sum;
 }
 
+/// Stretches of states that only hand their value on to the next one, as those of a dead time.
+void InputLimitedIlqr::findChains() {
+  chains_.clear();
+  for (Eigen::Index i = 0; i + 1 < n_x_; ++i) {
+    const std::vector<Eigen::Index>& rows = rows_[static_cast<std::size_t>(i)];
+    in_chain_[static_cast<std::size_t>(i)] =
+        rows.size() == 1 && rows.front() == i + 1 && model_.affine().A(i + 1, i) == 1.0;
+    if (!in_chain_[static_cast<std::size_t>(i)]) continue;
+    if (chains_.empty() || chains_.back().first + chains_.back().length != i)
+      chains_.push_back({i, 0});
+    ++chains_.back().length;
+  }
+}
+
 /// PA_ = P A and Qxx_ = A' P A; what is 0 in A for ever is left out.
 void InputLimitedIlqr::multiplyByA(const Matrix& A) {
-  PA_.setZero();
+  for (const Chain& chain : chains_)
+    PA_.middleCols(chain.first, chain.length) = P_.middleCols(chain.first + 1, chain.length);
   for (Eigen::Index j = 0; j < n_x_; ++j) {
-    for (const Eigen::Index k : rows_[static_cast<std::size_t>(j)]) {
-      const double factor = A(k, j);
-      for (Eigen::Index i = 0; i < n_x_; ++i) PA_(i, j) += P_(i, k) * factor;
-    }
-    for (Eigen::Index i = 0; i < n_x_; ++i) {
+    if (in_chain_[static_cast<std::size_t>(j)]) continue;
+    PA_.col(j).setZero();
+    for (const Eigen::Index k : rows_[static_cast<std::size_t>(j)])
+      PA_.col(j) += A(k, j) * P_.col(k);
+  }
+  for (Eigen::Index j = 0; j < n_x_; ++j)
+    for (const Chain& chain : chains_)
+      Qxx_.col(j).segment(chain.first, chain.length) =
+          PA_.col(j).segment(chain.first + 1, chain.length);
+  for (Eigen::Index i = 0; i < n_x_; ++i) {
+    if (in_chain_[static_cast<std::size_t>(i)]) continue;
+    for (Eigen::Index j = 0; j < n_x_; ++j) {
       double sum = 0.0;
       for (const Eigen::Index k : rows_[static_cast<std::size_t>(i)]) sum += A(k, i) * PA_(k, j);
       Qxx_(i, j) = sum;
     }
+  }
+}
+
+/// Qx_ = A' p. A sum of at most two terms has no order, so that the zeros need not be in it.
+void InputLimitedIlqr::slopesOfStates(const Matrix& A) {
+  for (Eigen::Index j = 0; j < n_x_; ++j) {
+    const std::vector<Eigen::Index>& rows = rows_[static_cast<std::size_t>(j)];
+    if (rows.size() > 2) {
+      Qx_[j] = A.col(j).dot(p_);
+      continue;
+    }
+    Qx_[j] = 0.0;
+    for (const Eigen::Index k : rows) Qx_[j] += A(k, j) * p_[k];
   }
 }
 
@@ -178,6 +228,9 @@ void InputLimitedIlqr::linearise() {
     model_.addSlopes(state_, input_, disturbances_.col(i), A_[static_cast<std::size_t>(i)],
                      B_[static_cast<std::size_t>(i)]);
   }
+  if (!linear_) return;
+  narrowPattern(A_.front());
+  findChains();
 }
 
 /// P_ of sample i + 1 with what its errors cost, and Quu_, Qux_, Qxx_ of sample i.
@@ -189,7 +242,11 @@ void InputLimitedIlqr::reach(Eigen::Index i) {
     P_(row, row) += params_.weight_output[o];
   }
   multiplyByA(A);
-  PB_.noalias() = P_.lazyProduct(B);
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    PB_.col(a).setZero();
+    for (Eigen::Index k = 0; k < n_x_; ++k)
+      if (B(k, a) != 0.0) PB_.col(a) += B(k, a) * P_.col(k);
+  }
   Qux_.noalias() = B.transpose().lazyProduct(PA_);
   Quu_.noalias() = B.transpose().lazyProduct(PB_);
   for (Eigen::Index a = 0; a < n_u_; ++a) {
@@ -208,11 +265,18 @@ void InputLimitedIlqr::goBack(Eigen::Index i) {
   const Matrix& K = K_[static_cast<std::size_t>(i)];
   PB_.noalias() = K.transpose().lazyProduct(Quu_);
   PB_ += Qux_.transpose();
-  P_ = Qxx_;
-  P_ += PB_.lazyProduct(K);
-  P_ += K.transpose().lazyProduct(Qux_);
-  PA_ = P_.transpose();
-  P_ = 0.5 * (P_ + PA_);
+  KT_ = K.transpose();
+  for (Eigen::Index j = 0; j < n_x_; ++j) {
+    const auto addTo = [&](const Matrix& left, const Matrix& right) {
+      moved_ = right(0, j) * left.col(0);
+      for (Eigen::Index a = 1; a < n_u_; ++a) moved_ += right(a, j) * left.col(a);
+      PA_.col(j) += moved_;
+    };
+    PA_.col(j) = Qxx_.col(j);
+    addTo(PB_, K);
+    addTo(KT_, Qux_);
+  }
+  P_ = 0.5 * (PA_ + PA_.transpose());
 }
 
 bool InputLimitedIlqr::sweep() {
@@ -232,7 +296,7 @@ bool InputLimitedIlqr::sweep() {
       const Eigen::Index row = model_.outputState(o);
       p_[row] += params_.weight_output[o] * (states_(row, i + 1) + offset_[o] - reference_(o, i));
     }
-    Qx_.noalias() = A_[at].transpose().lazyProduct(p_);
+    slopesOfStates(A_[at]);
     Qu_.noalias() = B_[at].transpose().lazyProduct(p_);
     for (Eigen::Index a = 0; a < n_u_; ++a) {
       const Eigen::Index before = model_.inputState(a, 1);

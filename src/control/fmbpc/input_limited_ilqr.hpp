@@ -60,7 +60,10 @@ class InputLimitedIlqr {
   void reach(Eigen::Index i);
   void goBack(Eigen::Index i);
   void findPattern();
+  void narrowPattern(const Matrix& A);
+  void findChains();
   void multiplyByA(const Matrix& A);
+  void slopesOfStates(const Matrix& A);
   double rowTimes(const Matrix& A, Eigen::Index row, const Vector& x) const;
   bool chooseInput(Eigen::Index i);
   bool findFeedback(Eigen::Index i);
@@ -87,7 +90,12 @@ class InputLimitedIlqr {
   bool linear_, linearised_{false}, swept_{false};
   /// Of each column of A the rows that may not be 0, of each row the columns.
   std::vector<std::vector<Eigen::Index>> rows_, columns_;
-  Matrix P_, PA_, PB_, Quu_, Qux_, Qxx_, free_Quu_;
+  struct Chain {
+    Eigen::Index first, length;
+  };
+  std::vector<Chain> chains_;
+  std::vector<bool> in_chain_;  ///< n_x
+  Matrix P_, PA_, PB_, KT_, Quu_, Qux_, Qxx_, free_Quu_;
   Vector p_, Qu_, Qx_, wish_, state_, next_, moved_, lower_, upper_, input_, correction_, offset_;
   Matrix disturbances_, reference_;
   std::vector<bool> fixed_;

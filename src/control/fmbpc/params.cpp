@@ -32,9 +32,8 @@ const char* lawsInsteadOf(FmbpcForm law, const std::string& key) {
   const auto among = [&](std::initializer_list<const char*> keys) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   };
-  if (law != FmbpcForm::kIterated &&
-      among({"horizon_steps", "iterations", "forecast_period_h", "forecast_pole",
-             "forecast_memory_h", "weight_input", "input_target"}))
+  if (law != FmbpcForm::kIterated && among({"horizon_steps", "iterations", "forecast_period_h",
+                                            "forecast_memory_h", "weight_input", "input_target"}))
     return "law iterated with it";
   if (law == FmbpcForm::kPublished && among({"weight_output", "weight_move"}))
     return "law general or iterated with it";
@@ -49,8 +48,7 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   if (realisation == FmbpcRealisation::kObserver) observer.validate(n_y);
   require(coincidence_steps >= 1 && coincidence_steps <= 100000, "controller.coincidence_steps",
           "an integer from 1 to 100000");
-  require(offset_gain >= 0.0 && offset_gain <= 1.0, "controller.offset_gain",
-          "a number from 0 to 1");
+  require(offset_gain >= 0.0 && offset_gain <= 1.0, "offset_gain", "a number from 0 to 1");
   for (const auto& [key, weight] :
        {std::pair{"weight_output", &weight_output}, std::pair{"weight_move", &weight_move}})
     requireNonNegative(*weight, weight->size(), std::string("controller.") + key);

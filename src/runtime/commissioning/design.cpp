@@ -2,8 +2,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <numeric>
 #include <sstream>
 
 #include "base/finite_json.hpp"
@@ -18,6 +18,7 @@
 #include "fmbpc/base/text.hpp"
 #include "optim/simplex_search.hpp"
 #include "runtime/loop_probe.hpp"
+#include "runtime/loop_ring.hpp"
 #include "runtime/run.hpp"
 
 namespace fpc {
@@ -577,65 +578,100 @@ class Designer {
     return values;
   }
 
-  /// Mean square of the errors, in steps, plus that of the moves, in parts of the largest allowed.
-  double cost(const std::string& text, const TsModel& model, std::uint64_t seed) const {
-    LoopFile loop = scenario(text, model);
-    loop.simulation.disturbance.values = noiseOf(loop.simulation, model, seed);
-    const RunRecord record = runLoop(loop);
-    if (!record.complete) return kFailed;
-    double error = 0.0, moves = 0.0, beyond = 0.0;
-    const auto n = static_cast<double>(record.samples.size());
-    for (std::size_t k = 0; k < record.samples.size(); ++k) {
-      const SampleRecord& s = record.samples[k];
-      for (Index i = 0; i < s.state.outputs.size(); ++i) {
-        if (s.state.outputs[i] > brief_.upper[i] || s.state.outputs[i] < brief_.lower[i])
-          beyond += 1.0;
-        double e = s.tracking.setpoint[i] - s.state.outputs[i];
-        if (!brief_.held[static_cast<std::size_t>(i)]) {
-          const double y = s.state.outputs[i];
-          e = std::max({y - brief_.zone_upper[i], brief_.zone_lower[i] - y, 0.0});
-        }
-        error += e * e / (outline_.y_scale[i] * outline_.y_scale[i]);
-      }
-      if (k + 1 < record.samples.size() && k > 0) {
-        const Vector& u = s.action.input;
-        const Vector& before = record.samples[k - 1].action.input;
-        for (Index j = 0; j < u.size(); ++j) {
-          const double part = (u[j] - before[j]) / brief_.move[j];
-          moves += params_.movement * part * part;
-        }
-      }
+  /// Sums of what has been counted of a run.
+  struct Counted {
+    std::size_t samples{};
+    double error{}, moves{}, beyond{};
+    double over(double n) const {
+      const double value = (error + moves + kViolation * beyond) / n;
+      return std::isfinite(value) ? std::min(value, kFailed) : kFailed;
     }
-    const double value = (error + moves + kViolation * beyond) / n;
-    return std::isfinite(value) ? std::min(value, kFailed) : kFailed;
+  };
+  /// The next sample. The last one of a run, which has no move, is counted when the run has ended.
+  void count(const RunRecord& record, Counted& counted) const {
+    const std::size_t k = counted.samples++;
+    const SampleRecord& s = record.samples[k];
+    for (Index i = 0; i < s.state.outputs.size(); ++i) {
+      if (s.state.outputs[i] > brief_.upper[i] || s.state.outputs[i] < brief_.lower[i])
+        counted.beyond += 1.0;
+      double e = s.tracking.setpoint[i] - s.state.outputs[i];
+      if (!brief_.held[static_cast<std::size_t>(i)]) {
+        const double y = s.state.outputs[i];
+        e = std::max({y - brief_.zone_upper[i], brief_.zone_lower[i] - y, 0.0});
+      }
+      counted.error += e * e / (outline_.y_scale[i] * outline_.y_scale[i]);
+    }
+    if (k == 0 || k + 1 == record.samples.size()) return;
+    const Vector& u = s.action.input;
+    const Vector& before = record.samples[k - 1].action.input;
+    for (Index j = 0; j < u.size(); ++j) {
+      const double part = (u[j] - before[j]) / brief_.move[j];
+      counted.moves += params_.movement * part * part;
+    }
   }
 
-  std::vector<double> costsOver(const std::string& text,
-                                const std::vector<const TsModel*>& models) const {
-    std::vector<double> costs(models.size(), kFailed);
+  /// Mean square of the errors, in steps, plus that of the moves, in parts of the largest allowed.
+  /// `enough`: given what the run costs at least, whether it may end; that is the answer then.
+  template <typename Enough>
+  double cost(const std::string& text, const TsModel& model, std::uint64_t seed,
+              const Enough& enough) const {
+    LoopFile loop = scenario(text, model);
+    loop.simulation.disturbance.values = noiseOf(loop.simulation, model, seed);
+    const RunOptions options;
+    LoopRing ring(loop, options);
+    const double n = loop.simulation.samples + 1.0;
+    Counted counted;
+    while (ring.step()) {
+      while (counted.samples + 1 < ring.recorded().samples.size()) count(ring.recorded(), counted);
+      if (enough(counted.over(n))) return counted.over(n);
+    }
+    const RunRecord record = ring.take();
+    if (!record.complete) return kFailed;
+    while (counted.samples < record.samples.size()) count(record, counted);
+    return counted.over(n);
+  }
+
+  /// Half of what counts is the worst of the models.
+  template <typename Costs>
+  static double joined(const Costs& costs) {
+    double sum = 0.0, most = 0.0;
+    for (const double cost : costs) {
+      sum += cost;
+      most = std::max(most, cost);
+    }
+    return 0.5 * (sum / static_cast<double>(costs.size()) + most);
+  }
+
+  /// Where joined() is not below `least`: what is sure of them when that is known.
+  std::vector<double> costsOver(const std::string& text, const std::vector<const TsModel*>& models,
+                                double least = kInfinity) const {
+    std::vector<std::atomic<double>> sure(models.size());
+    for (std::atomic<double>& cost : sure) cost = 0.0;
+    std::vector<double> costs(models.size());
     parallelFor(models.size(), params_.threads, [&](std::size_t m) {
+      if (joined(sure) >= least) return;
       try {
-        costs[m] = cost(text, *models[m], params_.seed + m);
+        sure[m] = cost(text, *models[m], params_.seed + m, [&](double at_least) {
+          sure[m] = at_least;
+          return joined(sure) >= least;
+        });
       } catch (const InputError&) {
-        costs[m] = kFailed;  // a setting with which the loop cannot be run
+        sure[m] = kFailed;  // a setting with which the loop cannot be run
       }
     });
+    std::copy(sure.begin(), sure.end(), costs.begin());
     return costs;
   }
 
-  /// Half of what counts is the worst of the models tuned on.
-  double tunedCost(const std::string& text) const {
-    const std::vector<double> all = costsOver(text, tuned_);
-    const double sum = std::accumulate(all.begin(), all.end(), 0.0);
-    return 0.5 *
-           (sum / static_cast<double>(all.size()) + *std::max_element(all.begin(), all.end()));
+  double tunedCost(const std::string& text, double least = kInfinity) const {
+    return joined(costsOver(text, tuned_, least));
   }
 
-  /// The cost, dearer the less stable the loop is on one of `asked`. That takes several times as
-  /// long as the runs and is asked only of what is below `least`.
+  /// The cost, dearer the less stable the loop is on one of `asked`; of what is not below `least`,
+  /// something that is not, which takes less time.
   double value(const std::string& text, const std::vector<const TsModel*>& asked, double least,
                double& peak) const {
-    const double cost = tunedCost(text);
+    const double cost = tunedCost(text, least);
     if (cost >= least) return cost;
     peak = worst(probes(text, asked)).worst_peak;
     return cost * std::pow(std::max(std::min(peak, kMostPeak) / allowed_peak_, 1.0), kPeakPower);
