@@ -71,30 +71,48 @@ double PulseResponse::growth() const {
   return largest;
 }
 
+/// Sum of r_k z^k over the samples, z = e^(-j omega T), at each frequency: by Horner's rule.
+Eigen::ArrayXcd PulseResponse::transform(Index from, Index to, const Eigen::ArrayXd& omega) const {
+  const Matrix& r = reached_[static_cast<std::size_t>(from)];
+  const Eigen::ArrayXd real = (omega * sample_time_).cos(),
+                       imaginary = -(omega * sample_time_).sin();
+  Eigen::ArrayXd x = Eigen::ArrayXd::Zero(omega.size()), y = x, next(omega.size());
+  for (Index k = r.cols(); k-- > 0;) {
+    next = x * real - y * imaginary + r(to, k);
+    y = x * imaginary + y * real;
+    x.swap(next);
+  }
+  Eigen::ArrayXcd sums(omega.size());
+  sums.real() = x;
+  sums.imag() = y;
+  return sums;
+}
+
 Eigen::MatrixXcd PulseResponse::sensitivity(double omega) const {
   const auto n_u = static_cast<Index>(reached_.size());
-  Eigen::MatrixXcd S = Eigen::MatrixXcd::Zero(n_u, n_u);
-  for (Index j = 0; j < n_u; ++j) {
-    const Matrix& r = reached_[static_cast<std::size_t>(j)];
-    for (Index k = 0; k < r.cols(); ++k)
-      S.col(j) += r.col(k) * std::polar(1.0, -omega * sample_time_ * static_cast<double>(k));
-  }
+  Eigen::MatrixXcd S(n_u, n_u);
+  for (Index i = 0; i < n_u; ++i)
+    for (Index j = 0; j < n_u; ++j)
+      S(i, j) = transform(j, i, Eigen::ArrayXd::Constant(1, omega))[0];
   return S;
 }
 
 Complex PulseResponse::loopGain(Index input, double omega) const {
-  const Matrix& r = reached_[static_cast<std::size_t>(input)];
-  Complex S = 0.0;
-  for (Index k = 0; k < r.cols(); ++k)
-    S += r(input, k) * std::polar(1.0, -omega * sample_time_ * static_cast<double>(k));
-  return 1.0 / S - 1.0;
+  return 1.0 / transform(input, input, Eigen::ArrayXd::Constant(1, omega))[0] - 1.0;
 }
 
 double PulseResponse::peak() const {
+  const auto n_u = static_cast<Index>(reached_.size());
+  const Eigen::Map<const Eigen::ArrayXd> omega(omega_.data(), static_cast<Index>(omega_.size()));
+  std::vector<Eigen::MatrixXcd> S(omega_.size(), Eigen::MatrixXcd(n_u, n_u));
+  for (Index i = 0; i < n_u; ++i)
+    for (Index j = 0; j < n_u; ++j) {
+      const Eigen::ArrayXcd entry = transform(j, i, omega);
+      for (std::size_t w = 0; w < S.size(); ++w) S[w](i, j) = entry[static_cast<Index>(w)];
+    }
   double largest = 0.0;
-  for (const double omega : omega_)
-    largest = std::max(largest,
-                       Eigen::JacobiSVD<Eigen::MatrixXcd>(sensitivity(omega)).singularValues()[0]);
+  for (const Eigen::MatrixXcd& at : S)
+    largest = std::max(largest, Eigen::JacobiSVD<Eigen::MatrixXcd>(at).singularValues()[0]);
   return largest;
 }
 
@@ -117,15 +135,15 @@ LoopMargins PulseResponse::margins(Index input) const {
     found.delay_s = std::min(found.delay_s, (turn < 0.0 ? turn + 2.0 * kHalfTurn : turn) / omega);
     found.crossover_rad_s = std::max(found.crossover_rad_s, omega);
   };
-  Complex before = L(omega_.front());
+  const Eigen::Map<const Eigen::ArrayXd> omega(omega_.data(), static_cast<Index>(omega_.size()));
+  const Eigen::ArrayXcd gains = 1.0 / transform(input, input, omega) - 1.0;
   for (std::size_t i = 1; i < omega_.size(); ++i) {
-    const Complex now = L(omega_[i]);
+    const Complex before = gains[static_cast<Index>(i) - 1], now = gains[static_cast<Index>(i)];
     if ((before.imag() > 0.0) != (now.imag() > 0.0))
       takeReal(signChange(omega_[i - 1], omega_[i], [&](double w) { return L(w).imag(); }));
     if ((std::abs(before) > 1.0) != (std::abs(now) > 1.0))
       takeUnit(
           signChange(omega_[i - 1], omega_[i], [&](double w) { return std::abs(L(w)) - 1.0; }));
-    before = now;
   }
   takeReal(0.0);  // there, and at the end, L is real
   takeReal(omega_.back());

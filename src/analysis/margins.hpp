@@ -38,6 +38,8 @@ class PulseResponse {
   const std::vector<double>& frequencies() const { return omega_; }  ///< [rad/s]
 
  private:
+  Eigen::ArrayXcd transform(Eigen::Index from, Eigen::Index to, const Eigen::ArrayXd& omega) const;
+
   std::vector<Matrix> reached_;
   double sample_time_;
   std::vector<double> omega_;

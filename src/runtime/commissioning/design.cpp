@@ -511,10 +511,12 @@ class Designer {
     return per_hour ? 3600.0 / outline_.settling : 1.0;
   }
 
+  LoopFile loopOf(const std::string& text) const { return parseLoop(text, brief_.loop.name); }
+
   /// The loop on one model, asked for steps of all that is held, then for loads.
-  LoopFile scenario(const std::string& text, const TsModel& model) const {
-    LoopFile loop = onModel(parseLoop(text, brief_.loop.name), model,
-                            modelRest(models_.fits, countOf(brief_.loop.plant_info.inputs)));
+  LoopFile scenario(const LoopFile& given, const TsModel& model) const {
+    LoopFile loop =
+        onModel(given, model, modelRest(models_.fits, countOf(brief_.loop.plant_info.inputs)));
     const double Ts = brief_.loop.plant_info.sample_time_s,
                  stretch_h = outline_.stretch * Ts / 3600.0;
     loop.setpoint.initial = loop.simulation.initial_state;
@@ -613,9 +615,9 @@ class Designer {
   /// Mean square of the errors, in steps, plus that of the moves, in parts of the largest allowed.
   /// `enough`: given what the run costs at least, whether it may end; that is the answer then.
   template <typename Enough>
-  double cost(const std::string& text, const TsModel& model, std::uint64_t seed,
+  double cost(const LoopFile& asked, const TsModel& model, std::uint64_t seed,
               const Enough& enough) const {
-    LoopFile loop = scenario(text, model);
+    LoopFile loop = scenario(asked, model);
     loop.simulation.disturbance.values = noiseOf(loop.simulation, model, seed);
     const RunOptions options;
     LoopRing ring(loop, options);
@@ -647,16 +649,22 @@ class Designer {
                                 double least = kInfinity) const {
     std::vector<std::atomic<double>> sure(models.size());
     for (std::atomic<double>& cost : sure) cost = 0.0;
-    std::vector<double> costs(models.size());
+    std::vector<double> costs(models.size(), kFailed);
+    LoopFile asked;
+    try {
+      asked = loopOf(text);
+    } catch (const InputError&) {
+      return costs;
+    }
     parallelFor(models.size(), params_.threads, [&](std::size_t m) {
       if (joined(sure) >= least) return;
       try {
-        sure[m] = cost(text, *models[m], params_.seed + m, [&](double at_least) {
+        sure[m] = cost(asked, *models[m], params_.seed + m, [&](double at_least) {
           sure[m] = at_least;
           return joined(sure) >= least;
         });
       } catch (const InputError&) {
-        sure[m] = kFailed;  // a setting with which the loop cannot be run
+        sure[m] = kFailed;  // as above: a setting with which the loop cannot be run
       }
     });
     std::copy(sure.begin(), sure.end(), costs.begin());
@@ -747,7 +755,7 @@ class Designer {
 
   /// Whether the last tenth of each stretch is within a part of a step, without noise.
   bool settles(const std::string& text) const {
-    const RunRecord record = runLoop(scenario(text, models_.model));
+    const RunRecord record = runLoop(scenario(loopOf(text), models_.model));
     const auto stretch = static_cast<std::size_t>(outline_.stretch);
     for (std::size_t k = stretch; k < record.samples.size(); ++k) {
       if (k % stretch >= stretch / 10) continue;
@@ -762,16 +770,17 @@ class Designer {
     return record.complete;
   }
 
-  DesignFigures probe(const std::string& text, const TsModel& model) const {
-    LoopFile loop = scenario(text, model);
+  DesignFigures probe(const LoopFile& asked, const TsModel& model) const {
+    LoopFile loop = scenario(asked, model);
     loop.simulation.disturbance_commands.clear();
     return atRest(loop);
   }
   std::vector<DesignFigures> probes(const std::string& text,
                                     const std::vector<const TsModel*>& models) const {
     std::vector<DesignFigures> each(models.size());
+    const LoopFile asked = loopOf(text);
     parallelFor(each.size(), params_.threads,
-                [&](std::size_t m) { each[m] = probe(text, *models[m]); });
+                [&](std::size_t m) { each[m] = probe(asked, *models[m]); });
     return each;
   }
   static DesignFigures worst(const std::vector<DesignFigures>& each) {
