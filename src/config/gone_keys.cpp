@@ -56,7 +56,7 @@ constexpr std::pair<const char*, const char*> kGone[] = {
     {"controller.disturbance_nominal", "disturbance.nominal"},
     {"controller.forecast_pole", "no key: it is 0.975"},
     {"controller.offset_gain", "no key: it is 0.2"},
-    {"gateway.modbus.reconnect_s", "no key: it is 5 times gateway.modbus.poll_s"},
+    {"gateway.modbus.reconnect_s", "no key: it is 5 times poll_s, 1 at most"},
     {"controller.observer.adaptive", "controller.observer.noise_std"},
     {"controller.observer.adaptation", "controller.observer.noise_std"},
     {"targets.observer.adaptive", "targets.observer.noise_std"},

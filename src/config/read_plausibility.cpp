@@ -79,8 +79,9 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   params.range_falls = root.section("actuator").has("fallback");  // an initial input is none
   params.hold_samples = actuator.hold_samples;
   params.needs = loop.controller->signalUse(controllerContext(loop)).needed;
-  if (loop.fallback) {
-    const std::vector<bool> needed = loop.fallback->signalUse(controllerContext(loop)).needed;
+  for (const auto* fallback : {&loop.fallback, &loop.standstill_fallback}) {
+    if (!*fallback) continue;
+    const std::vector<bool> needed = (*fallback)->signalUse(controllerContext(loop)).needed;
     for (std::size_t i = 0; i < needed.size(); ++i) params.needs[i] = params.needs[i] || needed[i];
   }
   for (const Eigen::Index hidden : loop.estimator.outputs)

@@ -58,6 +58,24 @@ void setNoise(const LoopFile& loop, const SignalNames& names, std::vector<Watche
     signal.noise_std = std[signal.is_output ? signal.place : n_y + signal.place];
 }
 
+/// It sees what is measured, beside a law that sees estimates.
+void readOwnFallback(YamlSection& section, LoopFile& loop, const PlantInfo& plant) {
+  bool off = false;
+  YamlSection fallback = section.sectionOrOff("fallback", off);
+  if (section.has("fallback") && !off && !fallback.has("type"))
+    fallback.fail("type",
+                  "a controller; for inputs that are set by themselves: type: pi, kp: 0, bias");
+  loop.standstill_fallback = readFallback(section, loop);
+  if (!loop.standstill_fallback) return;
+  if (loop.standstill_fallback->type().needs_model)
+    fallback.fail("type", "a controller without a model");
+  for (const Index followed : loop.standstill_fallback->signalUse(controllerContext(loop)).followed)
+    for (const Index hidden : loop.estimator.outputs)
+      if (followed == hidden)
+        section.fail("fallback", "a controller of measured outputs, not of " +
+                                     plant.outputs[static_cast<std::size_t>(hidden)].name);
+}
+
 }  // namespace
 
 void readStandstill(YamlSection& root, LoopFile& loop) {
@@ -81,9 +99,7 @@ void readStandstill(YamlSection& root, LoopFile& loop) {
   setNoise(loop, names, params.signals);
   params.usual = loop.disturbance_nominal;
   params.fallback = loop.simulation.actuator.initial;
-  loop.standstill_fallback = readFallback(section, loop);
-  if (loop.standstill_fallback && loop.standstill_fallback->type().needs_model)
-    section.fail("fallback.type", "a controller without a model, which no frozen output misleads");
+  readOwnFallback(section, loop, plant);
   section.finish();
 }
 

@@ -43,12 +43,13 @@
 namespace fpc {
 
 /// Ready when a fitting plant has introduced itself and, for laws that need one, a fitting model
-/// has come. Base actions go out on base_action, or straight on control_action if the loop has no
-/// optimizer (or ~final_action is true). Services: ~manual (SetBool: true is manual),
-/// ~manual_input, ~hold (SetBool: true stops the setpoint schedule, false lets it go on), ~adapt
-/// (SetBool: false freezes a controller that retunes itself), ~candidate (Candidate: watches
-/// another law, hands over, takes back); action ~commission (Commission). Settings that may change
-/// in a run are served to dynamic_reconfigure under the node's name.
+/// has come, and everybody who listens is connected. Base actions go out on base_action, or
+/// straight on control_action if the loop has no optimizer (or ~final_action is true). Services:
+/// ~manual (SetBool: true is manual), ~manual_input, ~hold (SetBool: true stops the setpoint
+/// schedule, false lets it go on), ~adapt (SetBool: false freezes a controller that retunes
+/// itself), ~candidate (Candidate: watches another law, hands over, takes back); action ~commission
+/// (Commission). Settings that may change in a run are served to dynamic_reconfigure under the
+/// node's name.
 class ControllerNode : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }  ///< every loop has a controller

@@ -1,5 +1,6 @@
 #include "ros/modbus_field.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <random>
 
@@ -8,9 +9,9 @@
 namespace fpc {
 namespace {
 
-constexpr double kReconnectPolls = 5.0;  // poll times between two attempts
-constexpr double kRenew = 0.1;           // [s] between two renewals of what is held already
-constexpr double kShown = 2.0;           // [s] that a coil which somebody else has written is told
+constexpr double kReconnectPolls = 5.0, kReconnect = 1.0;  // polls between two attempts, most [s]
+constexpr double kRenew = 0.1;  // [s] between two renewals of what is held already
+constexpr double kShown = 2.0;  // [s] that a coil which somebody else has written is told
 
 std::chrono::duration<double> seconds(double value) { return std::chrono::duration<double>(value); }
 
@@ -117,7 +118,8 @@ void ModbusField::work() {
     }
     lock.lock();
     shown_ = seen_;
-    const double pause_s = (link ? 1.0 : kReconnectPolls) * params_.modbus.poll_s;
+    const double poll_s = params_.modbus.poll_s,
+                 pause_s = link ? poll_s : std::min(kReconnectPolls * poll_s, kReconnect);
     const std::uint64_t told = wish.number;
     if (!last)
       wake_.wait_for(lock, seconds(pause_s),

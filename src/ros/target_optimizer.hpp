@@ -28,7 +28,8 @@
 
 namespace fpc {
 
-/// Ready when a fitting plant has introduced itself and a fitting model has come. signals():
+/// Ready when a fitting plant has introduced itself, a fitting model has come and everybody who
+/// listens is connected. signals():
 /// NAME_target of each output and input, targets_cost, targets_moved (samples of this run at which
 /// a target of an input moved), targets_travel.
 class TargetOptimizer : public Node {

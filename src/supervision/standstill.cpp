@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -163,16 +164,20 @@ void StandstillWatch::watch(const Measurement& now) {
 
 /// As at the start of a run: the input has followed a frozen output for the whole window.
 void StandstillWatch::beginFallback() {
-  Measurement start = seen_;
-  start.header.step = 0;
-  fallback_->reset(start);
+  const std::uint32_t step = std::exchange(seen_.header.step, 0U);
+  fallback_->forget();
+  fallback_->reset(seen_);
+  seen_.header.step = step;
 }
 
 void StandstillWatch::fallBack(const Measurement& now, const SetpointSource& setpoint,
                                ControllerOutput& output) {
-  if (!away_ && fallback_) beginFallback();
-  if (fallback_) fallback_->step(seen_, setpoint, output);
-  if (!fallback_ || !output.ok || !output.input.allFinite()) output.input = params_.fallback;
+  output.input = params_.fallback;
+  if (fallback_) {
+    if (!away_) beginFallback();
+    fallback_->step(seen_, setpoint, output);
+    if (!output.ok || !output.input.allFinite()) output.input = now.input_applied;
+  }
   limits_.clip(output.input, now.input_applied);
   output.source = ActionSource::kFallback;
   output.reference = setpoint.present();

@@ -128,6 +128,22 @@ TEST(LoopSections, WatchesAreHandedOn) {
   const LoopFile told = readLoop(
       "asp_case1_pi_x", {{"standstill.signals.x", "3"}, {"standstill.noise_window_h", "10"}});
   EXPECT_EQ(told.standstill.noise_window_samples, 50);
+  const auto with = [](const std::string& fallback) {
+    return readLoop("asp_case1_pi_x",
+                    {{"standstill.signals.x", "3"}, {"standstill.fallback", fallback}});
+  };
+  const std::string loops =
+      "loops: [{input: q_r, output: s, kp: 0, feedforward: [{disturbance: "
+      "q_i, gain: 0.1}]}]";
+  EXPECT_EQ(with("{type: pi, " + loops + "}").standstill_fallback->type().name, "pi");
+  EXPECT_EQ(with("false").standstill_fallback, nullptr);
+  EXPECT_THROW(with("{q_r: 800}"), InputError);
+  EXPECT_THROW(with("{type: fmbpc}"), InputError);
+  EXPECT_THROW(
+      readLoop("asp_best_estimated",
+               {{"standstill.signals.x", "3"},
+                {"standstill.fallback", "{type: pi, loops: [{input: q_r, output: x_r, kp: 1}]}"}}),
+      InputError);
   const LoopFile off =
       readLoop("asp_case1_pi_x", {{"standstill.signals.x", "3"}, {"standstill", "false"}});
   EXPECT_TRUE(off.standstill.signals.empty());

@@ -127,13 +127,31 @@ TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsTheFlow) {
   EXPECT_NEAR(output.input[0], 1600.0, 1e-9) << "800 + 5000 * 0.2 at the bound";
 }
 
-TEST_F(Standstill, AFallbackWithoutAnAnswerLeavesTheInitialInput) {
+TEST_F(Standstill, TheFallbackBeginsAnewEachTime) {
+  auto other = std::make_unique<FakeLaw>();
+  FakeLaw* const fallback = other.get();
+  make(params(), kInfinity, std::move(other));
+  const std::size_t before = fallback->resets.size();
+  for (const double s : {58.0, 63.0}) {
+    for (int k = 0; k < kWindow + 3; ++k) see(s, 1300.0 + 200.0 * std::sin(k));
+    EXPECT_EQ(output.source, ActionSource::kFallback);
+    EXPECT_TRUE(frozen("s"));
+  }
+  ASSERT_EQ(fallback->resets.size(), before + 2);
+  EXPECT_EQ(fallback->resets.back(), 0U) << "as at a start";
+}
+
+TEST_F(Standstill, AFallbackWithoutAnAnswerHoldsTheInput) {
   auto lost = std::make_unique<FakeLaw>();
   lost->spoil = [](ControllerOutput& o) { o.ok = false; };
   make(params(), kInfinity, std::move(lost));
-  for (int k = 0; k < kWindow + 1; ++k) see(58.0, 1300.0 + 200.0 * std::sin(k));
+  double held = applied;
+  for (int k = 0; k < kWindow + 3; ++k) {
+    see(58.0, 1300.0 + 200.0 * std::sin(k));
+    if (output.source != ActionSource::kFallback) held = applied;
+  }
   EXPECT_EQ(output.source, ActionSource::kFallback);
-  EXPECT_EQ(output.input[0], 800.0);
+  EXPECT_EQ(output.input[0], held);
 }
 
 /// Watched with noise of these standard deviations, over 32 samples.

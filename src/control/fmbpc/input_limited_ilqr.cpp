@@ -57,7 +57,7 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       bounds_(fixed_.size()),
       factor_(n_u_) {
   findPattern();
-  findChains();
+  chains_.reserve(in_chain_.size());
   if (linear_) stages_.assign(A_.size(), Stage{P_, Quu_, Qux_, bounds_});
 }
 

@@ -93,7 +93,7 @@ class InputLimitedIlqr {
   struct Chain {
     Eigen::Index first, length;
   };
-  std::vector<Chain> chains_;
+  std::vector<Chain> chains_;   ///< of a linear model, else none
   std::vector<bool> in_chain_;  ///< n_x
   Matrix P_, PA_, PB_, KT_, Quu_, Qux_, Qxx_, free_Quu_;
   Vector p_, Qu_, Qx_, wish_, state_, next_, moved_, lower_, upper_, input_, correction_, offset_;

@@ -67,8 +67,17 @@ struct Task {
   Matrix loads, reference;
 };
 
-TsModel linear(std::mt19937_64& generator) {
-  return test::randomModel(generator, {2, 2, 1, 1, 2, 1, 2, 1});  // one rule
+/// One rule; of even seeds with dead times, one input's longer at one output.
+TsModel linear(std::mt19937_64& generator, std::uint64_t seed = 1) {
+  const int delay = seed % 2 == 0 ? 5 : 1;
+  TsModel model = test::randomModel(generator, {2, 2, 1, 1, 2, delay, 2, 1});
+  OutputModel& second = model.submodels[1];
+  for (std::size_t k = 0; k < second.regressors.size() && delay > 1; ++k) {
+    const Regressor& r = second.regressors[k];
+    if (r.kind == SignalKind::kInput && r.index == 1 && r.lag == delay)
+      second.rules[0].coefficients[static_cast<Eigen::Index>(k)] = 0.0;
+  }
+  return model;
 }
 
 /// The same task as a programme over all inputs: residuals are affine in them.
@@ -102,7 +111,7 @@ TEST_P(PlanOfALinearModel, IsTheSolutionOfTheQuadraticProgramme) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 generator(seed);
-    Task task(linear(generator), test::wideLimits(2, GetParam()), seed);
+    Task task(linear(generator, seed), test::wideLimits(2, GetParam()), seed);
     ASSERT_TRUE(task.plan());
     const QpResult answer = solveAsProgramme(task);
     ASSERT_TRUE(answer.usable());
@@ -127,7 +136,7 @@ TEST_P(PlanOfALinearModel, IsTheSolutionWithMoveLimitsAsWell) {
     InputLimits limits = test::wideLimits(2, GetParam());
     const double move = seed % 3 == 0 ? 0.05 : 0.15;
     limits.move = test::pair(move, seed % 2 == 0 ? kInfinity : 2.0 * move);
-    Task task(linear(generator), limits, seed);
+    Task task(linear(generator, seed), limits, seed);
     ASSERT_TRUE(task.plan());
     const QpResult answer = solveAsProgramme(task);
     ASSERT_TRUE(answer.usable());

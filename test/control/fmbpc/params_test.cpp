@@ -22,11 +22,13 @@ TEST(FmbpcParams, ValidateNamesTheField) {
     }
   };
   EXPECT_NO_THROW(test::generalParams(2, 1, 6, 0.5, 0.0).validate(2, 1));
+  FmbpcParams no_key = test::generalParams(2, 1, 6, 0.5, 0.0);
+  no_key.offset_gain = std::nan("");
+  EXPECT_THROW(no_key.validate(2, 1), InputError);
   expect("coincidence_steps", [](FmbpcParams& p) { p.coincidence_steps = 0; });
   expect("prediction_steps", [](FmbpcParams& p) { p.prediction_steps = 0; });
   expect("reference_pole", [](FmbpcParams& p) { p.reference_pole = one(0.5); });
   expect("reference_pole", [](FmbpcParams& p) { p.reference_pole[1] = 1.0; });
-  expect("offset_gain", [](FmbpcParams& p) { p.offset_gain = std::nan(""); });
   expect("weight_output", [](FmbpcParams& p) { p.weight_output = one(1.0); });
   expect("weight_output", [](FmbpcParams& p) { p.weight_output.setZero(); });
   expect("weight_move", [](FmbpcParams& p) { p.weight_move = one(-1.0); });
