@@ -9,7 +9,8 @@ import subprocess
 import sys
 import tempfile
 import unittest
-import xmlrpc.client
+
+import rosgraph
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "test" / "ros"))
@@ -150,10 +151,10 @@ class Equal(unittest.TestCase):
         port = ring.free_port()
         core = subprocess.Popen(ring.tied(["rosmaster", "--core", "-p", port]), stdout=subprocess.DEVNULL)
         self.addCleanup(ring.killed, core)
-        master = xmlrpc.client.ServerProxy(f"http://localhost:{port}")
-        ring.wait_until(lambda: ring.answers(master), "the master")
+        master = rosgraph.Master("/died", f"http://localhost:{port}")
+        ring.wait_until(master.is_online, "the master")
         for topic in ("base_action", "control_action", "solver_report", "measurement", "predictive_action"):
-            master.registerSubscriber("/died", f"/{topic}", "*", "http://localhost:1")
+            master.registerSubscriber("/" + topic, "*", "http://localhost:1")
         self.compare_case(*CASES["paced"], port=port)
 
     def test_a_setpoint_and_an_offset_clamped_are_events_in_both_ways(self):

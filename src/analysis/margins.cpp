@@ -88,15 +88,6 @@ Eigen::ArrayXcd PulseResponse::transform(Index from, Index to, const Eigen::Arra
   return sums;
 }
 
-Eigen::MatrixXcd PulseResponse::sensitivity(double omega) const {
-  const auto n_u = static_cast<Index>(reached_.size());
-  Eigen::MatrixXcd S(n_u, n_u);
-  for (Index i = 0; i < n_u; ++i)
-    for (Index j = 0; j < n_u; ++j)
-      S(i, j) = transform(j, i, Eigen::ArrayXd::Constant(1, omega))[0];
-  return S;
-}
-
 Complex PulseResponse::loopGain(Index input, double omega) const {
   return 1.0 / transform(input, input, Eigen::ArrayXd::Constant(1, omega))[0] - 1.0;
 }

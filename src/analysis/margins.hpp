@@ -29,8 +29,6 @@ class PulseResponse {
   bool hasDecayed(double part = 1e-3) const;
   /// Of the swings in the second half of the samples, per sample: above 1 they grow.
   double growth() const;
-  /// S at a frequency [rad/s]: n_u n_u.
-  Eigen::MatrixXcd sensitivity(double omega) const;
   std::complex<double> loopGain(Eigen::Index input, double omega) const;  ///< L
   double peak() const;  ///< largest singular value of S
   LoopMargins margins(Eigen::Index input) const;

@@ -205,6 +205,15 @@ void readController(YamlSection& root, LoopFile& loop) {
                            ") for clp; clp: false takes the optimizer out");
 }
 
+std::shared_ptr<const ControllerConfig> readFallback(YamlSection& section, const LoopFile& loop) {
+  bool off = false;
+  YamlSection fallback = section.sectionOrOff("fallback", off);
+  if (!section.has("fallback") || off) return nullptr;
+  std::shared_ptr<const ControllerConfig> read = readController(fallback, controllerContext(loop));
+  if (read->type().open_loop) fallback.fail("type", "a controller that follows setpoints");
+  return read;
+}
+
 void readTargets(YamlSection& root, LoopFile& loop) {
   bool off = false;
   YamlSection section = root.sectionOrOff("targets", off);

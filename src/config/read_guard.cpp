@@ -4,15 +4,6 @@
 
 namespace fpc {
 
-std::shared_ptr<const ControllerConfig> readFallback(YamlSection& section, const LoopFile& loop) {
-  bool off = false;
-  YamlSection fallback = section.sectionOrOff("fallback", off);
-  if (!section.has("fallback") || off) return nullptr;
-  std::shared_ptr<const ControllerConfig> read = readController(fallback, controllerContext(loop));
-  if (read->type().open_loop) fallback.fail("type", "a controller that follows setpoints");
-  return read;
-}
-
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   bool off = false;
   YamlSection section = root.sectionOrOff("guard", off);

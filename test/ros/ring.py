@@ -96,13 +96,6 @@ def is_registered(node, master=None):
         return False
 
 
-def answers(master):
-    try:
-        return master.getPid("/test")[0] == 1
-    except OSError:
-        return False
-
-
 def threads(process):
     """Names of its threads."""
     names = []

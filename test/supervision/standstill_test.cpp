@@ -100,11 +100,11 @@ TEST_F(Standstill, ADisturbanceThatStandsIsReplacedByItsUsualValue) {
   EXPECT_TRUE(frozen("q_i"));
 }
 
-/// 800, and 5000 more at twice the usual flow: it does not look at the output.
+/// 800, and 2000 more at twice the usual flow: it does not look at the output.
 std::unique_ptr<Controller> byFlow(const InputLimits& limits, const PlantInfo& plant) {
   PiLoop loop;
   loop.bias = 800.0;
-  loop.terms.feedforward.push_back({0, 5000.0 / 1300.0, 1300.0, 0.0, -1});
+  loop.terms.feedforward.push_back({0, 2000.0 / 1300.0, 1300.0, 0.0, -1});
   PiParams params;
   params.loops.push_back(loop);
   return std::make_unique<PiController>(params, limits, plant);
@@ -124,7 +124,9 @@ TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsTheFlow) {
   EXPECT_EQ(output.source, ActionSource::kFallback);
   make(params(), kInfinity, byFlow(limits(kInfinity), plant()));
   for (int k = 0; k < kWindow + 1; ++k) see(58.0, q_i(k));
-  EXPECT_NEAR(output.input[0], 1600.0, 1e-9) << "800 + 5000 * 0.2 at the bound";
+  EXPECT_NEAR(output.input[0], 800.0 + 2000.0 * 0.2 * (kWindow % 2), 1e-9);
+  see(58.0, q_i(kWindow + 1));
+  EXPECT_NEAR(output.input[0], 800.0, 1e-9);
 }
 
 TEST_F(Standstill, TheFallbackBeginsAnewEachTime) {
