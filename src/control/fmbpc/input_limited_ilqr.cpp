@@ -30,6 +30,7 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       K_(static_cast<std::size_t>(N_), Matrix::Zero(n_u_, n_x_)),
       linear_(std::all_of(model.model().submodels.begin(), model.model().submodels.end(),
                           [](const OutputModel& m) { return m.rules.size() == 1; })),
+      in_chain_(static_cast<std::size_t>(n_x_)),
       P_(n_x_, n_x_),
       PA_(n_x_, n_x_),
       PB_(n_x_, n_u_),
@@ -52,7 +53,6 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       offset_(n_y_),
       disturbances_(model.model().disturbances.size(), N_),
       reference_(n_y_, N_),
-      in_chain_(static_cast<std::size_t>(n_x_)),
       fixed_(static_cast<std::size_t>(n_u_)),
       bounds_(fixed_.size()),
       factor_(n_u_) {
