@@ -223,6 +223,18 @@ void YamlSection::numbers(const std::string& key, std::vector<double>& value, Ra
   for (const auto& item : node) value.push_back(toNumber(item, key, range));
 }
 
+std::vector<std::pair<double, double>> YamlSection::pairs(const std::string& key) {
+  std::vector<std::pair<double, double>> all;
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return all;
+  if (!node.IsSequence()) fail(key, "a list of pairs of numbers, [[x, y], ...]");
+  for (const auto& item : node) {
+    if (!item.IsSequence() || item.size() != 2) fail(key, "pairs of numbers, [[x, y], ...]");
+    all.emplace_back(toNumber(item[0], key, {}), toNumber(item[1], key, {}));
+  }
+  return all;
+}
+
 void YamlSection::vector(const std::string& key, Vector& value, Eigen::Index n, Range range) {
   const YAML::Node node = raw(key);
   if (!node.IsDefined()) return;

@@ -131,7 +131,15 @@ constexpr std::pair<const char*, const char*> kGone[] = {
     {"targets.inputs.*.rank", "rest, behind the prices"},
     {"guard.trust_low", "trust: [low, high]"},
     {"guard.trust_high", "trust: [low, high]"},
-    {"candidate.authority", "no key: it is [0.25, 0.5, 1]"}};
+    {"candidate.authority", "no key: it is [0.25, 0.5, 1]"},
+    {"candidate.samples", "no key: it is 200"},
+    {"controller.integration_steps", "no key: it is 4"},
+    {"clp.qp", "no key: max_iterations is 2000"},
+    {"plausibility.bridge_samples", "no key: it is 3"},
+    {"controller.loops.gain_schedule.output", "gain_schedule: [[output, factor], ...]"},
+    {"controller.loops.gain_schedule.gain", "gain_schedule: [[output, factor], ...]"},
+    {"controller.loops.static_input.output", "static_input: [[output, input], ...]"},
+    {"controller.loops.static_input.input", "static_input: [[output, input], ...]"}};
 
 /// Paths of the mappings at the parts but the last, which hold the last one.
 void findIn(const YAML::Node& node, const std::vector<std::string>& parts, std::size_t index,

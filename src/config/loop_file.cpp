@@ -16,6 +16,8 @@
 namespace fpc {
 namespace {
 
+constexpr int kIntegrationSteps = 4;  // of a sample, in nmpc
+
 /// A plant that moves by steps of its own would ignore what the section says.
 void refuseUnusedIntegrator(YamlSection& root, const LoopFile& loop) {
   const YamlSection plant = root.section("plant");
@@ -140,8 +142,8 @@ ControllerContext controllerContext(const LoopFile& loop) {
                             nullptr};
   addResolution(loop, context);
   if (!loop.external_plant)
-    context.plant_model = [simulation = loop.simulation](int integration_steps) {
-      return makePlantSampleModel(simulation, integration_steps);
+    context.plant_model = [simulation = loop.simulation] {
+      return makePlantSampleModel(simulation, kIntegrationSteps);
     };
   return context;
 }

@@ -7,9 +7,7 @@ void readCandidate(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("candidate");
   CandidateFile& candidate = loop.candidate;
   section.text("loop", candidate.file);
-  section.integer("samples", candidate.params.samples, 40, 10000);
   section.boolean("automatic", candidate.params.automatic);
-  checked(section, [&] { candidate.params.validate(); });
   section.finish();
   if (!candidate.file.empty()) candidate.loop = readCandidateLoop(candidate.file, loop);
 }

@@ -86,7 +86,6 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   }
   for (const Eigen::Index hidden : loop.estimator.outputs)
     params.needs[static_cast<std::size_t>(hidden)] = false;  // estimated, whatever is measured
-  section.integer("bridge_samples", params.bridge_samples, 0);
   section.integer("reaction_samples", params.reaction_samples, 0, 100000);
   loop.stuck.hold = loop.gateway.enabled();
   readOption(section, "stuck", loop.stuck.hold, {{"say", false}, {"hold", true}});

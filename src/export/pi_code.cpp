@@ -83,8 +83,13 @@ class PiCode final : public LawCode {
   }
 
   /// to := the curve at `x`, linear between points, held outside.
-  void curve(const std::string& name, const std::vector<double>& at,
-             const std::vector<double>& value, const Value& x, const Value& to) {
+  void curve(const std::string& name, const std::vector<CurvePoint>& points, const Value& x,
+             const Value& to) {
+    std::vector<double> at, value;
+    for (const CurvePoint& point : points) {
+      at.push_back(point.at);
+      value.push_back(point.value);
+    }
     const int n = static_cast<int>(at.size());
     const Value xs = p_.table(name + "At", at), ys = p_.table(name + "Is", value);
     p_.set(to, ys[0]);
@@ -124,13 +129,8 @@ class PiCode final : public LawCode {
     const std::size_t n = k(i);
     if (!l.terms.static_input.empty()) {
       const Value from = l.terms.setpoint_pole > 0.0 ? path_before_[n] : path_[n];
-      std::vector<double> at, value;
-      for (const CurvePoint& point : l.terms.static_input) {
-        at.push_back(point.at);
-        value.push_back(point.value);
-      }
       p_.set(w_, from + (l.terms.setpoint_lead_h / hours_) * (path_[n] - path_before_[n]));
-      curve("piStatic" + std::to_string(i), at, value, w_, gain_);
+      curve("piStatic" + std::to_string(i), l.terms.static_input, w_, gain_);
       p_.set(v_, v_ + gain_);
     }
     if (l.terms.kd_h != 0.0) {
@@ -167,12 +167,7 @@ class PiCode final : public LawCode {
     aim(i);
     p_.set(error_, l.reverse ? b_.y[l.output] - t_ : t_ - b_.y[l.output]);
     if (!l.gain_schedule.empty()) {
-      std::vector<double> at, value;
-      for (const GainPoint& point : l.gain_schedule) {
-        at.push_back(point.output);
-        value.push_back(point.gain);
-      }
-      curve("piGain" + std::to_string(i), at, value, b_.y[l.output], gain_);
+      curve("piGain" + std::to_string(i), l.gain_schedule, b_.y[l.output], gain_);
       p_.set(error_, error_ * gain_);
     }
     p_.set(errors_[i], error_);

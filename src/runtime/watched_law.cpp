@@ -68,7 +68,6 @@ void WatchedLaw::watch(CandidateLaw candidate) {
   require(candidate.law->followsSetpoint(), "candidate.loop", "a law that follows setpoints");
   require(!candidate.model.submodels.empty(), "candidate.loop",
           "a loop with model.file: a law is judged by what its model foresees");
-  candidate.params.validate();
   const bool was_in_charge = inCharge();
   candidate_ = std::move(candidate);
   begin();

@@ -40,10 +40,6 @@ const char* nameOf(TrialResult result) {
 
 }  // namespace
 
-void CandidateParams::validate() const {
-  require(samples >= 40, "candidate.samples", "an integer >= 40");
-}
-
 CandidateTrial::CandidateTrial(const TsModel& model, const TsModel* present,
                                const CandidateParams& params, InputLimits limits,
                                std::vector<bool> moved)
@@ -52,9 +48,7 @@ CandidateTrial::CandidateTrial(const TsModel& model, const TsModel* present,
       trial_(model, Index{kLookAt[kLooks - 1]} * params.samples, std::move(moved)),
       errors_(&model, params.horizon, trial_.capacity()),
       present_(present, params.horizon, trial_.capacity()),
-      point_(countOf(model.outputs) + countOf(model.inputs) + countOf(model.disturbances)) {
-  params_.validate();
-}
+      point_(countOf(model.outputs) + countOf(model.inputs) + countOf(model.disturbances)) {}
 
 void CandidateTrial::reset() {
   trial_.reset();

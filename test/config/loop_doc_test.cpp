@@ -13,7 +13,6 @@
 #include "control/excitation/excitation.hpp"
 #include "control/fmbpc/law.hpp"
 #include "control/fuzzy_lq/law.hpp"
-#include "control/mpc/nmpc.hpp"
 #include "control/mpc/swarm_mpc.hpp"
 #include "control/pi/pi.hpp"
 #include "fmbpc/base/option.hpp"
@@ -100,8 +99,8 @@ std::set<std::string> readerKeys() {
       "plant:\n  type: external\n  name: p\n  outputs: [{name: y}]\n  inputs: [{name: u, lower: 0, "
       "upper: 1}]\n"
       "  disturbances: [{name: d}]\nsetpoint: {initial: {y: 1}}\n"
-      "controller: {type: pi, loops: [{input: u, output: y, kp: 1, gain_schedule: [{output: 0, "
-      "gain: 1}], static_input: [{output: 0, input: 1}], feedforward: [{disturbance: d, gain: "
+      "controller: {type: pi, loops: [{input: u, output: y, kp: 1, gain_schedule: [[0, 1]], "
+      "static_input: [[0, 1]], feedforward: [{disturbance: d, gain: "
       "1}]}]}\n";
   const std::string excitation =
       "plant: {type: activated_sludge}\ncontroller:\n  type: excitation\n  signals: [{input: q_r, "
@@ -207,7 +206,6 @@ std::map<std::string, std::string> structDefaults() {
   const ClpParams& clp = loop.clp;
   const FmbpcParams law;
   const FuzzyOptimalParams optimal;
-  const NmpcParams nmpc;
   const SwarmParams swarm = SwarmMpcParams{}.swarm;
   const IntegratorParams& integrator = loop.simulation.integrator;
   const CsvDisturbanceParams& csv = loop.disturbance.csv;
@@ -227,7 +225,6 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.law", wordOf(law.law)},
           {"controller.coincidence_steps", std::to_string(law.coincidence_steps)},
           {"controller.preview", word(law.preview)},
-          {"controller.integration_steps", std::to_string(nmpc.integration_steps)},
           {"controller.swarm.particles", std::to_string(swarm.particles)},
           {"controller.swarm.iterations", std::to_string(swarm.iterations)},
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
@@ -257,7 +254,6 @@ std::map<std::string, std::string> structDefaults() {
           {"clp.cost", wordOf(clp.cost)},
           {"clp.bounds", wordOf(clp.bounds)},
           {"clp.output_penalty", exactText(clp.output_penalty)},
-          {"clp.qp.max_iterations", std::to_string(clp.qp.max_iterations)},
           {"actuator.hold_samples", std::to_string(loop.simulation.actuator.hold_samples)},
           {"noise.seed", std::to_string(loop.simulation.noise_seed)},
           {"loop.speedup", exactText(loop.ring.speedup)},

@@ -117,7 +117,7 @@ TEST(CstrReference, TheGainScheduleIsTheSlopeOfTheStaticCurve) {
     const auto points = readLoop(name).controllerParams<PiParams>().loops[0].gain_schedule;
     ASSERT_EQ(points.size(), 23U);
     for (const auto& point : points)
-      EXPECT_NEAR(point.gain, slope(point.output) / slope(0.1), 2e-4 * (1.0 + point.gain));
+      EXPECT_NEAR(point.value, slope(point.at) / slope(0.1), 2e-4 * (1.0 + point.value));
   }
 }
 

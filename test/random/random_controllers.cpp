@@ -81,10 +81,9 @@ std::string pi(Dice& dice, RandomFrame& frame) {
     if (anti_windup == "tracking" && dice.chance(0.5))
       text += ", tracking_time_h: " + Dice::rounded(frame.hours(dice.scale(1.0, 200.0)));
     if (dice.chance(0.2))
-      text += ", gain_schedule: [{output: " + exactText(workingRange(y).first) +
-              ", gain: " + dice.number(0.2, 2.0) +
-              "}, {output: " + exactText(workingRange(y).second) +
-              ", gain: " + dice.number(0.2, 2.0) + "}]";
+      text += ", gain_schedule: [[" + exactText(workingRange(y).first) + ", " +
+              dice.number(0.2, 2.0) + "], [" + exactText(workingRange(y).second) + ", " +
+              dice.number(0.2, 2.0) + "]]";
     text += derivative(dice, frame, kp) + loadAhead(dice, frame, u) + "}\n";
   }
   return text;

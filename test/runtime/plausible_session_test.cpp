@@ -38,9 +38,9 @@ bool says(const RunRecord& record, EventCode code, const std::string& signal) {
 }
 
 TEST(PlausibleSession, ALyingSensorHoldsTheInputThenFallsBackAndReturnsWithoutABump) {
-  Overrides overrides = fault("output/x", 9000.0, 8.0);
-  overrides.emplace_back("plausibility.bridge_samples", "0");
-  const RunRecord record = runLoop(loopWith(overrides));
+  LoopFile loop = loopWith(fault("output/x", 9000.0, 8.0));
+  loop.plausibility.bridge_samples = 0;
+  const RunRecord record = runLoop(loop);
   EXPECT_EQ(sourceAt(record, 5.8), ActionSource::kBase);
   EXPECT_EQ(sourceAt(record, 6.0), ActionSource::kHeld);
   EXPECT_EQ(sourceAt(record, 6.6), ActionSource::kHeld);

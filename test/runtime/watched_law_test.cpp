@@ -162,7 +162,6 @@ TEST(WatchedLaw, WhatCannotBeJudgedIsRefusedWithItsReason) {
   expectWords(errorOfSet("tank.yaml", {{"candidate.loop", folder + "furnace_candidate.yaml"}}),
               {"furnace_candidate.yaml", "inputs", "heat"});
   expectWords(errorOfSet("tank.yaml", {{"candidate.loop", "tank_candidat"}}), {"tank_candidat"});
-  expectWords(errorOfSet("tank.yaml", {{"candidate.samples", "10"}}), {"candidate.samples"});
 }
 
 TEST(WatchedLaw, ALoopThatExtendsTheOneInChargeMayBeItsCandidate) {

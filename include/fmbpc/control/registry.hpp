@@ -29,9 +29,9 @@ struct ControllerContext {
   Vector noise_std;            ///< n_y, of the measurements, as the loop file states, with that of
                                ///< their resolution; 0: unknown
   int perturbation_steps{0};   ///< n_c of the optimizer behind the controller; 0: there is none
-  /// One sample of the simulated plant by this many integration steps; empty for an external plant.
+  /// One sample of the simulated plant by four Runge-Kutta steps; empty for an external plant.
   /// @throws InputError for a plant that has no such model.
-  std::function<std::unique_ptr<SampleModel>(int integration_steps)> plant_model;
+  std::function<std::unique_ptr<SampleModel>()> plant_model;
   bool quantised{false};  ///< the resolution of an output is stated
 
   std::vector<std::string> outputs() const;       ///< names, in the order of PlantInfo

@@ -36,7 +36,7 @@ struct ClpParams {
   Vector output_weight;               ///< n_y, > 0, of output_penalty; default 1
   double output_penalty{1e4};         ///< weight of squared soft violations beside the scaled cost:
                                       ///< largest entry of H near 1, slacks over slack_scale
-  QpSettings qp{500};
+  QpSettings qp{2000};
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
 

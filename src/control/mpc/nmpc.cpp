@@ -16,7 +16,6 @@ constexpr double kOtherStarts[] = {0.5, 1.0, 0.0};  // of the range of the input
 
 void NmpcParams::validate(Index n_y, Index n_u) const {
   horizon.validate(n_y, n_u);
-  require(integration_steps >= 1, "controller.integration_steps", "an integer >= 1");
   require(solver.max_iterations >= 1, "max_iterations", "an integer >= 1");
 }
 

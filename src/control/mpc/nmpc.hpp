@@ -10,7 +10,6 @@ namespace fpc {
 struct NmpcParams {
   HorizonParams horizon;
   GaussNewtonSettings solver;
-  int integration_steps{4};  ///< Runge-Kutta steps of a sample, of the plant's equations
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
 

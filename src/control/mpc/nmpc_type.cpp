@@ -8,19 +8,17 @@ namespace {
 NmpcParams readNmpc(YamlSection& section, const ControllerContext& loop) {
   NmpcParams params;
   params.horizon = readHorizon(section, loop);
-  section.integer("integration_steps", params.integration_steps, 1, 10000);
   if (!loop.plant_model)
     section.fail("type", "a plant that can be simulated: nmpc predicts with the plant's equations");
   checked(section, [&] {
     params.validate(loop.outputCount(), loop.inputCount());
-    loop.plant_model(params.integration_steps);
+    loop.plant_model();
   });
   return params;
 }
 
 std::unique_ptr<Controller> makeNmpc(const NmpcParams& params, const ControllerContext& loop) {
-  return std::make_unique<Nmpc>(params, loop.limits, loop.plant,
-                                loop.plant_model(params.integration_steps));
+  return std::make_unique<Nmpc>(params, loop.limits, loop.plant, loop.plant_model());
 }
 
 const bool kNmpcRegistered = registerController<NmpcParams>(

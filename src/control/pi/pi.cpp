@@ -16,25 +16,6 @@ double insideBounds(const InputLimits& limits, Eigen::Index i, double value) {
   return std::clamp(value, limits.lower[i], limits.upper[i]);
 }
 
-double scheduledGain(const std::vector<GainPoint>& points, double output) {
-  if (points.empty()) return 1.0;
-  const auto after =
-      std::find_if(points.begin(), points.end(), [&](const auto& p) { return p.output > output; });
-  if (after == points.begin()) return points.front().gain;
-  if (after == points.end()) return points.back().gain;
-  const GainPoint& before = *(after - 1);
-  const double part = (output - before.output) / (after->output - before.output);
-  return before.gain + part * (after->gain - before.gain);
-}
-
-void validateSchedule(const std::vector<GainPoint>& points, const std::string& key) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool increasing = i == 0 || points[i].output > points[i - 1].output;
-    require(std::isfinite(points[i].output) && increasing, key, "finite outputs that increase");
-    require(std::isfinite(points[i].gain) && points[i].gain > 0.0, key, "finite gains > 0");
-  }
-}
-
 void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, Eigen::Index n_u,
                   Eigen::Index n_d) {
   require(loop.input >= 0 && loop.input < n_u, key + "input", "one of the plant's inputs");
@@ -44,7 +25,9 @@ void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, 
   require(std::isfinite(loop.bias), key + "bias", "a finite number");
   require(std::isfinite(loop.tracking_time_h) && loop.tracking_time_h >= 0.0,
           key + "tracking_time_h", "a number >= 0");
-  validateSchedule(loop.gain_schedule, key + "gain_schedule");
+  validateCurve(loop.gain_schedule, key + "gain_schedule");
+  for (const CurvePoint& point : loop.gain_schedule)
+    require(point.value > 0.0, key + "gain_schedule", "gains > 0");
   loop.terms.validate(key, n_d);
 }
 
@@ -119,7 +102,7 @@ void PiController::refer(const SetpointSource& setpoint, std::uint32_t step, Vec
 double PiController::errorOf(const PiLoop& loop, const Measurement& now, double aim) const {
   const double difference = aim - now.outputs[loop.output];
   return (loop.reverse ? -difference : difference) *
-         scheduledGain(loop.gain_schedule, now.outputs[loop.output]);
+         valueOf(loop.gain_schedule, now.outputs[loop.output], 1.0);
 }
 
 // u = bias + kp g e + ki int g e dt

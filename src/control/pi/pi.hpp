@@ -13,13 +13,6 @@
 
 namespace fpc {
 
-/// At this value of the scheduling signal (the followed output, unless PiTerms says another) kp and
-/// ki are multiplied by `gain`; derivative, feed-forward and steady input are not.
-struct GainPoint {
-  double output{};
-  double gain{1.0};
-};
-
 /// What keeps the integral from winding up while u is at a limit.
 enum class AntiWindup { kNone, kClamp, kTracking };
 /// bias: the integral starts at 0; bumpless: u(0) = input_applied.
@@ -42,8 +35,7 @@ struct PiLoop {
   AntiWindup anti_windup{AntiWindup::kClamp};
   double tracking_time_h{};  ///< of `tracking`; 0: kp / ki
   PiStart start{PiStart::kBias};
-  /// g(y): outputs increasing, linear between points, held outside; empty: 1.
-  std::vector<GainPoint> gain_schedule;
+  std::vector<CurvePoint> gain_schedule;  ///< g(y); empty: 1
   PiTerms terms;
 };
 

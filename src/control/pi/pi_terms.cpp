@@ -14,14 +14,22 @@ void requireNotNegative(double value, const std::string& key) {
 
 }  // namespace
 
-double valueOf(const std::vector<CurvePoint>& curve, double at) {
-  if (curve.empty()) return 0.0;
+double valueOf(const std::vector<CurvePoint>& curve, double at, double empty) {
+  if (curve.empty()) return empty;
   const auto after =
       std::find_if(curve.begin(), curve.end(), [&](const auto& p) { return p.at > at; });
   if (after == curve.begin()) return curve.front().value;
   if (after == curve.end()) return curve.back().value;
   const CurvePoint& before = *(after - 1);
   return before.value + (at - before.at) / (after->at - before.at) * (after->value - before.value);
+}
+
+void validateCurve(const std::vector<CurvePoint>& curve, const std::string& key) {
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const bool increasing = i == 0 || curve[i].at > curve[i - 1].at;
+    require(increasing && std::isfinite(curve[i].at) && std::isfinite(curve[i].value), key,
+            "[x, value] of finite numbers, x increasing");
+  }
 }
 
 double PiFeedforward::valueOf(const Vector& disturbances) const {
@@ -40,11 +48,7 @@ void PiTerms::validate(const std::string& key, Eigen::Index n_d) const {
   requireNotNegative(setpoint_lead_h, key + "setpoint_lead_h");
   require(setpoint_pole >= 0.0 && setpoint_pole < 1.0, key + "setpoint_pole",
           "a number >= 0 and < 1");
-  for (std::size_t i = 0; i < static_input.size(); ++i) {
-    const bool increasing = i == 0 || static_input[i].at > static_input[i - 1].at;
-    require(increasing && std::isfinite(static_input[i].at + static_input[i].value),
-            key + "static_input", "finite points that increase");
-  }
+  validateCurve(static_input, key + "static_input");
   for (std::size_t i = 0; i < feedforward.size(); ++i) {
     const PiFeedforward& f = feedforward[i];
     const std::string where = key + "feedforward[" + std::to_string(i) + "].";
@@ -110,8 +114,8 @@ double PiTermState::feedforward(const Measurement& now) {
 double PiTermState::sum(const Measurement& now, double gain) {
   const double from = terms_.setpoint_pole > 0.0 ? path_before_ : path_;
   const double at = from + terms_.setpoint_lead_h * (path_ - path_before_) / sample_time_h_;
-  const double total =
-      valueOf(terms_.static_input, at) + gain * derivative(now.outputs[output_]) + feedforward(now);
+  const double total = valueOf(terms_.static_input, at, 0.0) +
+                       gain * derivative(now.outputs[output_]) + feedforward(now);
   fresh_ = false;
   return total;
 }

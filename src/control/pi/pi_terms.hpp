@@ -21,13 +21,15 @@ struct PiFeedforward {
   double valueOf(const Vector& disturbances) const;
 };
 
-/// A point of a curve, linear between points, held outside.
+/// A point of a curve: increasing in `at`, linear between points, held outside.
 struct CurvePoint {
   double at{}, value{};
 };
 
-/// 0 for an empty curve.
-double valueOf(const std::vector<CurvePoint>& curve, double at);
+/// `empty` for a curve without points.
+double valueOf(const std::vector<CurvePoint>& curve, double at, double empty);
+/// @throws InputError naming `key`.
+void validateCurve(const std::vector<CurvePoint>& curve, const std::string& key);
 
 struct PiTerms {
   double kd_h{};              ///< input per output, times h; acts on -dy/dt, not scheduled

@@ -5,19 +5,6 @@
 namespace fpc {
 namespace {
 
-std::vector<GainPoint> readSchedule(YamlSection& section) {
-  std::vector<GainPoint> points;
-  for (auto& item : section.list("gain_schedule")) {
-    for (const char* key : {"output", "gain"}) need(item, key, "a number");
-    GainPoint point;
-    item.number("output", point.output, kFinite);
-    item.number("gain", point.gain, kFinitePositive);
-    item.finish();
-    points.push_back(point);
-  }
-  return points;
-}
-
 PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
   PiLoop pi;
   pi.input = indexByName(item, "input", loop.inputs());
@@ -33,7 +20,7 @@ PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
   if (item.has("tracking_time_h") && pi.anti_windup != AntiWindup::kTracking)
     item.fail("tracking_time_h", "anti_windup: tracking beside it");
   readOption(item, "start", pi.start);
-  pi.gain_schedule = readSchedule(item);
+  pi.gain_schedule = readCurve(item, "gain_schedule");
   readPiTerms(item, pi.terms, loop);
   item.finish();
   return pi;

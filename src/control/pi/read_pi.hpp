@@ -13,6 +13,8 @@ struct PiGains {
 };
 const SettingsTable<PiGains>& piSettings();
 
+/// Points [at, value] of a curve.
+std::vector<CurvePoint> readCurve(YamlSection& section, const std::string& key);
 /// Keys of one loop besides its gains.
 void readPiTerms(YamlSection& section, PiTerms& terms, const ControllerContext& loop);
 

@@ -22,20 +22,19 @@ std::vector<PiFeedforward> readFeedforward(YamlSection& loop, const ControllerCo
 
 }  // namespace
 
+std::vector<CurvePoint> readCurve(YamlSection& loop, const std::string& key) {
+  std::vector<CurvePoint> curve;
+  for (const auto& [at, value] : loop.pairs(key)) curve.push_back({at, value});
+  return curve;
+}
+
 void readPiTerms(YamlSection& loop, PiTerms& terms, const ControllerContext& context) {
   loop.number("kd_h", terms.kd_h, kFinite);
   loop.number("derivative_lag_h", terms.derivative_lag_h, kFiniteNotNegative);
   loop.number("preview_h", terms.preview_h, kFiniteNotNegative);
   loop.number("setpoint_pole", terms.setpoint_pole, {0.0, 1.0});
   loop.number("setpoint_lead_h", terms.setpoint_lead_h, kFiniteNotNegative);
-  for (auto& item : loop.list("static_input")) {
-    CurvePoint point;
-    for (const char* key : {"output", "input"}) need(item, key, "a number");
-    item.number("output", point.at, kFinite);
-    item.number("input", point.value, kFinite);
-    item.finish();
-    terms.static_input.push_back(point);
-  }
+  terms.static_input = readCurve(loop, "static_input");
   terms.feedforward = readFeedforward(loop, context);
 }
 

@@ -267,20 +267,17 @@ TEST(Nmpc, ParametersAreCheckedByName) {
       EXPECT_NE(std::string(e.what()).find(field), std::string::npos) << e.what();
     }
   };
-  NmpcParams steps = test::tankParams(), moves = steps, output = steps, move = steps, pole = steps,
-             integration = steps;
+  NmpcParams steps = test::tankParams(), moves = steps, output = steps, move = steps, pole = steps;
   steps.horizon.horizon_steps = 0;
   moves.horizon.move_steps = 9;
   output.horizon.weight_output[0] = 0.0;
   move.horizon.weight_move[0] = -1.0;
   pole.horizon.reference_pole[0] = 1.0;
-  integration.integration_steps = 0;
   refuses(steps, "horizon_steps");
   refuses(moves, "move_steps");
   refuses(output, "weight_output");
   refuses(move, "weight_move");
   refuses(pole, "reference_pole");
-  refuses(integration, "integration_steps");
 }
 
 }  // namespace control_horizon_nmpc_test

@@ -80,7 +80,7 @@ TEST_F(ScheduledPi, PublishesThePathToTheSetpointAndFollowsTheSetpointItself) {
 }
 
 TEST_F(ScheduledPi, RefusesASchedulesWithoutOrderOrWithoutGain) {
-  const auto refused = [&](const std::vector<GainPoint>& points) {
+  const auto refused = [&](const std::vector<CurvePoint>& points) {
     params_.loops[0].gain_schedule = points;
     try {
       make();

@@ -75,9 +75,9 @@ TEST(PiTerms, StaticInputIsThatOfThePath) {
   const auto out = play(terms, 6, zero, zero);
   EXPECT_EQ(out[0].second, 100.0);
   EXPECT_EQ(out[5].second, 300.0);
-  EXPECT_EQ(valueOf(terms.static_input, 15.0), 200.0);
-  EXPECT_EQ(valueOf(terms.static_input, 5.0), 100.0);
-  EXPECT_EQ(valueOf(terms.static_input, 25.0), 300.0);
+  EXPECT_EQ(valueOf(terms.static_input, 15.0, 0.0), 200.0);
+  EXPECT_EQ(valueOf(terms.static_input, 5.0, 0.0), 100.0);
+  EXPECT_EQ(valueOf(terms.static_input, 25.0, 0.0), 300.0);
 }
 
 TEST(PiTerms, DerivativeOfARampIsItsSlopeAfterTheLag) {
