@@ -64,7 +64,7 @@ def slower(controller, by):
 
 def commissioned(name, case, folder):
     shipped = yaml.safe_load(fmbpc("resolve", case["loop"]))
-    noisy = {"extends": case["loop"], "noise": {"std": case["noise"], "seed": 1}, "actuator": {"move_upper": case["brief"]["moves"]},
+    noisy = {"extends": case["loop"], "noise": {"std": case["noise"]}, "actuator": {"move_upper": case["brief"]["moves"]},
              **case.get("plant", {})}
     present = {**noisy, "title": f"{name}, slow PI", "controller": slower(shipped["controller"], case["slower"])}
     folder.mkdir(parents=True, exist_ok=True)

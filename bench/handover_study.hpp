@@ -193,7 +193,7 @@ inline Case makeCase(const std::string& source, const StudyPlant& plant, Spoil s
   };
   Case made;
   LoopFile& loop = made.loop;
-  loop = readLoop(file + ".yaml", {{"noise.seed", std::to_string(seed)}});
+  loop = readLoop(file + ".yaml", {{"seed", std::to_string(seed)}});
   // Setpoint steps from a half to one and a half times those of the file, either way.
   const double side = uniform(random) < 0.5 ? -1.0 : 1.0;
   for (SetpointStep& step : loop.setpoint.schedule)

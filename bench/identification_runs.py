@@ -60,7 +60,7 @@ class Records:
         if not out.exists():
             command = [str(TOOL), "run", loop, "--out", str(out)]
             if seed is not None:
-                command += ["--set", "disturbance.pattern.seed=%d" % seed]
+                command += ["--set", "seed=%d" % seed]
             subprocess.run(command, check=True, capture_output=True)
         found = list(out.rglob("trajectory.csv"))
         if len(found) != 1:

@@ -57,7 +57,7 @@ def settings(folder, plant, levels, schedule, seed, weight, factors):
     """Keys over a loop of these levels: its plant, the exact model of the plant without errors, and the case. A folder of its own for the model."""
     file = pathlib.Path(folder, "-".join(levels) + ".yaml")
     file.write_text(json.dumps(model(plant, levels)), encoding="utf-8")
-    found = {"sampling.duration_h": HOURS, "noise.seed": seed, "setpoint.schedule": schedule, "model.file": str(file), "controller.reference_pole": 0.0}
+    found = {"sampling.duration_h": HOURS, "seed": seed, "setpoint.schedule": schedule, "model.file": str(file), "controller.reference_pole": 0.0}
     found.update({f"controller.weight_move.{SIDES[level][1]}": weight for level in levels})
     elements = [e for level in levels for e in PLANTS[plant][level]]
     for i, ((gain, tau, inner), factor) in enumerate(zip(elements, factors)):

@@ -213,7 +213,7 @@ def column_run(case):
     spec["disturbance"] = {"commands": feed_steps(seed)}
     spec["clp"] = clp and {"perturbation_steps": 40, "cost": "least_perturbation"}
     if noisy:
-        spec["noise"] = {"std": {"y_D": 0.02, "x_B": 0.02}, "seed": seed}
+        spec["noise"] = {"std": {"y_D": 0.02, "x_B": 0.02}}; spec["seed"] = seed
     if back_off is None:  # setpoints in the middle of the zones
         del spec["targets"]
     else:
@@ -278,7 +278,7 @@ def zone_run(case):
     make, zones, middle = PLANTS[loop]
     spec, hours, noisy = make(seed, spread, noisy)
     spec["sampling"]["duration_h"] = hours
-    spec.setdefault("noise", {})["seed"] = seed
+    spec["seed"] = seed
     if not noisy:
         del spec["noise"]
     targets = spec["targets"]

@@ -97,7 +97,7 @@ Named named(std::string run) {
     const Overrides same = result.sets[0];
     result.sets.assign(seeds(), same);
     for (std::size_t i = 0; i < result.sets.size(); ++i)
-      result.sets[i].emplace_back("disturbance.pattern.seed", std::to_string(first + i));
+      result.sets[i].emplace_back("seed", std::to_string(first + i));
   }
   for (std::size_t i = 0; i < result.sets.size() && result.sets.size() > 1; ++i)
     result.variants.push_back(result.sets[i].back().first + " " + result.sets[i].back().second);

@@ -14,7 +14,7 @@ namespace fpc::papers {
 DataSet excited(const std::string& loop, const Structure& structure, int seed,
                 const Overrides& overrides) {
   const std::string n = std::to_string(seed);
-  Overrides set{{"disturbance.pattern.seed", n}, {"controller.seed", n}};
+  Overrides set{{"seed", n}};
   set.insert(set.end(), overrides.begin(), overrides.end());
   return dataOf(runLoop(loopOf(loop, set)), structure);
 }

@@ -25,7 +25,7 @@ CASES = {
     "fmbpc": ("asp_case1", 830, [], "lockstep", 3600),
     "pi": ("asp_case1_pi_x", 830, [], "lockstep", 3600),
     "clp": ("asp_case1_clp", 830, [], "lockstep", 3600),
-    "noise_limits": ("asp_case1_clp", 100, ["sampling.duration_h=20", "noise.std.s=5", "noise.std.x=20", "noise.seed=3",
+    "noise_limits": ("asp_case1_clp", 100, ["sampling.duration_h=20", "noise.std.s=5", "noise.std.x=20", "seed=3",
                                             "actuator.move_upper.q_r=30"], "lockstep", 3600),
     "paced": ("asp_case1_clp", 25, ["sampling.duration_h=5"], "paced", 7200),
     "realtime": ("asp_case1_clp", 25, ["sampling.duration_h=5"], "realtime", 3600),

@@ -43,7 +43,7 @@ constexpr EventKind kKinds[] = {
     {C::kPlanNotFound, "plan_not_found", kW, "the solver found no usable plan", "the plan of the sample before goes on", "look at weights, limits and the model"},
     {C::kNoAllowedInput, "no_allowed_input", kW, "no sequence of inputs is allowed", "the nearest allowed input is sent", "look at controller.inputs and the input's position"},
     {C::kReferenceHeldBack, "reference_held_back", kI, "an output is farther from its reference than controller.reference_holdback", "the law aims at a nearer reference", "none, after an upset; else raise reference_holdback"},
-    {C::kLockUp, "lock_up", kW, "an input stands at a bound while the error stays, and goes on with less of it", "its bound is drawn in (guard.lock_step)", "the gain's sign differs from the model's there"},
+    {C::kLockUp, "lock_up", kW, "an input stands at a bound while the error stays, and goes on with less of it", "its bound is drawn in by 0.3 of the range", "the gain's sign differs from the model's there"},
     {C::kOscillationGrows, "oscillation_grows", kW, "an input swings further each time: law and plant are not stable together", "the PI of section guard acts until the law begins anew (guard.growing_swings)", "name slow valves and analysers (actuator.lag, sensors.NAME.t90_s); weigh the moves"},
     {C::kQpNotSolved, "qp_not_solved", kW, "the constraint optimizer has no solution for this sample", "the base action is clipped and sent", "read the text: limits that cannot all hold, or an iteration limit"},
     {C::kBoundsConflict, "bounds_conflict", kW, "move limit and bound of an input conflict", "the bound wins", "look at where the input was before"},

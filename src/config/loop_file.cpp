@@ -41,10 +41,10 @@ void describePlant(YamlSection& root, LoopFile& loop) {
 
 const std::vector<std::string>& sections() {
   static const std::vector<std::string> names{
-      "actuator", "candidate",    "clp",     "controller", "disturbance", "estimator",
-      "extends",  "gateway",      "guard",   "loop",       "model",       "noise",
-      "plant",    "plausibility", "plugins", "report",     "sampling",    "sensors",
-      "setpoint", "standstill",   "targets", "tf",         "title"};
+      "actuator", "candidate",    "clp",        "controller", "disturbance", "estimator",
+      "extends",  "gateway",      "guard",      "loop",       "model",       "noise",
+      "plant",    "plausibility", "plugins",    "report",     "sampling",    "sensors",
+      "seed",     "setpoint",     "standstill", "targets",    "tf",          "title"};
   return names;
 }
 
@@ -96,6 +96,8 @@ LoopFile readKnownSections(YamlSection& root, const std::string& name) {
   loop.name = name;
   loop.report.title = name;
   root.text("title", loop.report.title);
+  root.seed("seed", loop.simulation.noise_seed);
+  loop.disturbance.pattern.seed = loop.simulation.noise_seed;
   readPlugins(root);
   readPlant(root, loop, names);
   readSampling(root, loop);
@@ -139,7 +141,9 @@ ControllerContext controllerContext(const LoopFile& loop) {
                             loop.disturbance_nominal,
                             loop.simulation.noise_std,
                             loop.has_clp ? loop.clp.perturbation_steps : 0,
-                            nullptr};
+                            nullptr,
+                            false,
+                            loop.simulation.noise_seed};
   addResolution(loop, context);
   if (!loop.external_plant)
     context.plant_model = [simulation = loop.simulation] {

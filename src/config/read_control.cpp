@@ -4,6 +4,7 @@
 
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
+#include "control/clp/params.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
@@ -72,19 +73,6 @@ void defaultClp(ClpParams& clp, Eigen::Index n_y, Eigen::Index n_u) {
   clp.output_upper = Vector::Constant(n_y, kInfinity);
 }
 
-void readTargetOutputs(YamlSection& section, ClpParams& clp,
-                       const std::vector<std::string>& outputs) {
-  std::vector<std::string> targets;
-  section.names("target_outputs", targets);
-  for (const auto& target : targets) {
-    const auto found = std::find(outputs.begin(), outputs.end(), target);
-    if (found == outputs.end())
-      throw InputError(section.where("target_outputs") + ": expected names out of " +
-                       join(outputs) + ", got '" + target + "'");
-    clp.target_outputs.push_back(static_cast<int>(found - outputs.begin()));
-  }
-}
-
 void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names) {
   section.integer("perturbation_steps", clp.perturbation_steps, 1, 1000);
   readOption(section, "cost", clp.cost);
@@ -93,7 +81,6 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
   readOption(section, "bounds", clp.bounds);
   section.byName("increment_lower", clp.increment_lower, names.inputs);
   section.byName("increment_upper", clp.increment_upper, names.inputs);
-  readTargetOutputs(section, clp, names.outputs);
   section.byName("output_lower", clp.output_lower, names.outputs);
   section.byName("output_upper", clp.output_upper, names.outputs);
   section.number("output_penalty", clp.output_penalty, kFinitePositive);
@@ -101,6 +88,15 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
 
 bool isThere(const YamlSection& root, const std::string& name) {
   return root.has(name) && !root.raw(name).IsNull();
+}
+
+/// The steady state that the optimizer counts from is that of the outputs which the law steers.
+void aimOptimizer(const YamlSection& section, LoopFile& loop) {
+  const auto n_y = countOf(loop.plant_info.outputs), n_u = countOf(loop.plant_info.inputs);
+  for (const Eigen::Index i : loop.controller->signalUse(controllerContext(loop)).followed)
+    if (n_y != n_u) loop.clp.target_outputs.push_back(static_cast<int>(i));
+  if (!needsTarget(loop.clp)) loop.clp.target_outputs.clear();
+  checked(section, [&] { loop.clp.validate(n_y, n_u); });
 }
 
 /// Zones become soft limits of the optimizer, unless its section has others; a rank above another
@@ -186,13 +182,13 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   const Eigen::Index n_y = countOf(names.outputs), n_u = countOf(names.inputs);
   defaultClp(loop.clp, n_y, n_u);
   readClpParams(section, loop.clp, names);
-  if (loop.has_clp) checked(section, [&] { loop.clp.validate(n_y, n_u); });
   section.finish();
 }
 
 void readController(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("controller");
   loop.controller = readController(section, controllerContext(loop));
+  if (loop.has_clp) aimOptimizer(root.section("clp"), loop);
   if (!loop.has_clp || loop.controllerType().predicts) return;
   std::vector<std::string> predicting;
   for (const auto& name : controllerNames())

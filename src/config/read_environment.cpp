@@ -29,7 +29,6 @@ void defaultActuator(const LoopFile& loop, const LoopNames& names, ActuatorParam
 
 void readPattern(YamlSection& section, PatternParams& params,
                  const std::vector<std::string>& names) {
-  section.seed("seed", params.seed);
   YamlSection channels = section.section("channels");
   for (const auto& name : names) {
     if (!channels.has(name)) continue;
@@ -110,7 +109,6 @@ void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 void readNoise(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("noise");
   loop.simulation.noise_std = usualNoise(names.outputs, names);
-  section.seed("seed", loop.simulation.noise_seed);
   section.byName("std", loop.simulation.noise_std, names.outputs, kFiniteNotNegative);
   section.finish();
 }

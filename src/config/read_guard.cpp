@@ -18,8 +18,6 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.integer("horizon_least", guard.horizon_least, 0);
   section.integer("return_samples", guard.return_samples, 1);
   section.integer("lock_samples", guard.lock_samples, 0);
-  section.number("lock_error", guard.lock_error, kFinitePositive);
-  section.number("lock_step", guard.lock_step, {0.0, 1.0, true});
   section.integer("growing_swings", guard.growing_swings, 0);
   guard.lock_outputs = loop.controller->signalUse(controllerContext(loop)).followed;
   loop.fallback = readFallback(section, loop);

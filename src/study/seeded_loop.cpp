@@ -34,13 +34,12 @@ double ownNumber(const LoopFile& loop, const std::string& key) {
 
 std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
   std::vector<std::string> keys;
-  if (loop.disturbance.source == DisturbanceSource::kPattern)
-    keys.emplace_back("disturbance.pattern.seed");
   const auto& sensors = loop.simulation.instruments.sensors;
-  if (noisy || std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
+  if (noisy || loop.disturbance.source == DisturbanceSource::kPattern ||
+      std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
         return sensor.second.noise_std > 0.0 || sensor.second.lost > 0.0;
       }))
-    keys.emplace_back("noise.seed");
+    keys.emplace_back("seed");
   const auto& parameters = loop.simulation.parameters;
   const auto local = parameters.find("local_noise");
   if (local != parameters.end() && local->second > 0.0)

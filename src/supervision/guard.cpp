@@ -34,8 +34,6 @@ void GuardParams::validate(Index n_y, bool has_fallback) const {
   require(horizon_least >= 0, "guard.horizon_least", "an integer >= 0");
   require(return_samples >= 1, "guard.return_samples", "an integer >= 1");
   require(lock_samples >= 0, "guard.lock_samples", "an integer >= 0");
-  require(lock_error > 0.0 && std::isfinite(lock_error), "guard.lock_error", "a number > 0");
-  require(lock_step > 0.0 && lock_step <= 1.0, "guard.lock_step", "a number > 0 and <= 1");
   require(growing_swings == 0 ||
               (growing_swings >= GrowingSwings::kFewest && growing_swings <= GrowingSwings::kMost),
           "guard.growing_swings", "0, or an integer from 3 to 20");

@@ -18,7 +18,7 @@ struct GuardParams {
   int return_samples{10};   ///< so long above trust_high before the law is back
   int lock_samples{0};      ///< an input so long at its bound is suspected; 0: never
   double lock_error{0.01};  ///< ... while an error is larger than this part of its output's range
-  double lock_step{0.1};    ///< by how much the bound is drawn in at once, in parts of the range
+  double lock_step{0.3};    ///< by how much the bound is drawn in at once, in parts of the range
   int lock_release{250};    ///< samples over which a drawn-in bound opens again
   int growing_swings{0};  ///< half swings in a row that grow: the fallback acts for good; 0: never
   std::vector<Eigen::Index> lock_outputs;  ///< whose errors count; empty: all

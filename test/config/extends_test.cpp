@@ -12,7 +12,7 @@ using Extends = LoopFolder;
 using Resolve = LoopFolder;
 
 TEST_F(Extends, MappingsMergeListsAndScalarsReplace) {
-  write("parent.yaml", smallLoop() + "noise: {seed: 5, std: {s: 1, x: 2}}\n");
+  write("parent.yaml", smallLoop() + "seed: 5\nnoise: {std: {s: 1, x: 2}}\n");
   const std::string child =
       write("child.yaml",
             "extends: parent\nnoise: {std: {x: 3}}\nsetpoint: {schedule: [{time_h: 1, s: 60}]}\n");

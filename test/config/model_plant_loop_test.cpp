@@ -78,8 +78,8 @@ TEST_F(ModelPlantLoop, AnExternalPlantIsRehearsedOnTheModel) {
 TEST_F(ModelPlantLoop, KeysOverItCountAsEver) {
   const std::string file =
       write("a.yaml", external("controller: {type: fmbpc, law: general, coincidence_steps: 12}\n"));
-  const LoopFile loop = readLoop(
-      file, {{"plant.type", "model"}, {"plant.ranges.q_c", "[50, 150]"}, {"noise.seed", "7"}});
+  const LoopFile loop =
+      readLoop(file, {{"plant.type", "model"}, {"plant.ranges.q_c", "[50, 150]"}, {"seed", "7"}});
   EXPECT_EQ(loop.plant_info.inputs[0].upper, 150.0);
   EXPECT_EQ(loop.simulation.noise_seed, 7U);
 }

@@ -101,7 +101,7 @@ TEST(PlantSampleModel, AStateThatWouldRunAwayIsFoundAtRest) {
 
 /// Sum of (y_r - y)^2 with noise of half a percent of the setpoints' span.
 double costUnderNoise(const std::string& name, const std::string& std, const std::string& seed) {
-  const RunRecord record = runLoop(readLoop(name, {{"noise.std.CA", std}, {"noise.seed", seed}}));
+  const RunRecord record = runLoop(readLoop(name, {{"noise.std.CA", std}, {"seed", seed}}));
   EXPECT_EQ(record.samples.size(), 401U) << name << " " << seed;
   double sum = 0.0;
   for (const auto& sample : record.samples)

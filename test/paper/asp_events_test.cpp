@@ -26,8 +26,7 @@ constexpr int kWithin = 20;  // samples: no lock-up lasts so long
 /// static curve. Which runs of seeds 1-40 stay there was found by a study.
 /// The longest lock-up of a run of at least kWithin samples.
 std::uint64_t lockedIn(const Case& c, bool guarded) {
-  Overrides set{{"actuator.input_upper.q_r", c.bound},
-                {"disturbance.pattern.seed", std::to_string(c.seed)}};
+  Overrides set{{"actuator.input_upper.q_r", c.bound}, {"seed", std::to_string(c.seed)}};
   if (!guarded) set.emplace_back("guard", "false");
   const LoopFile loop = readLoop("asp_case_c_own", set);
   return lockedSamples(loop, runLoop(loop), kWithin);

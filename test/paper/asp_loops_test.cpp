@@ -38,7 +38,7 @@ Weeks runWeeks(const std::string& name, int first_seed = 1, Overrides overrides 
   Weeks weeks;
   for (int week = 0; week < kWeeks; ++week) {
     Overrides seeded = overrides;
-    seeded.emplace_back("disturbance.pattern.seed", std::to_string(first_seed + week));
+    seeded.emplace_back("seed", std::to_string(first_seed + week));
     const Summary summary = runOnce(name, seeded);
     weeks.ise_s.push_back(summary.outputs[0].ise);
     weeks.ise_x.push_back(summary.outputs[1].ise);
@@ -53,8 +53,7 @@ Weeks runWeeks(const std::string& name, int first_seed = 1, Overrides overrides 
 
 /// Moves of more than a tenth of the range that the next one, as large, takes back.
 int reversals(const std::string& loop, int seed) {
-  const RunRecord record =
-      runLoop(readLoop(loop, {{"disturbance.pattern.seed", std::to_string(seed)}}));
+  const RunRecord record = runLoop(readLoop(loop, {{"seed", std::to_string(seed)}}));
   double before = 0.0;
   int count = 0;
   for (std::size_t k = 2; k < record.samples.size(); ++k) {

@@ -35,7 +35,7 @@ double iseOf(const Summary& summary, const std::string& output) {
 Weeks runWeeks(const std::string& name, int first, int last) {
   Weeks weeks;
   for (int seed = first; seed <= last; ++seed) {
-    const LoopFile loop = readLoop(name, {{"disturbance.pattern.seed", std::to_string(seed)}});
+    const LoopFile loop = readLoop(name, {{"seed", std::to_string(seed)}});
     const RunRecord record = runLoop(loop);
     EXPECT_TRUE(record.complete) << name;
     const Summary summary = summarize(loop, record, 0.0);

@@ -95,7 +95,7 @@ TEST(Bsm1Faults, AnAnalyserThatSticksUnderItsNoiseBeforeThePeak) {
 TEST(Bsm1Faults, AHealthyNoisyAnalyserIsNotAccused) {
   for (const char* noise : {"0.05", "0.3"})
     for (const char* seed : {"1", "2", "3"})
-      EXPECT_FALSE(run("bsm1_own_fmbpc", both(noisy(noise), {{"noise.seed", seed}})).saysFrozen(""))
+      EXPECT_FALSE(run("bsm1_own_fmbpc", both(noisy(noise), {{"seed", seed}})).saysFrozen(""))
           << noise << ", seed " << seed;
 }
 

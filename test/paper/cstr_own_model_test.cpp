@@ -21,7 +21,7 @@ namespace paper_cstr_own_model_test {
 
 TsModel identified(int seed, const std::string& excitation = "cstr_excite",
                    const std::string& structure_name = "cstr") {
-  const LoopFile loop = readLoop(excitation, {{"controller.seed", std::to_string(seed)}});
+  const LoopFile loop = readLoop(excitation, {{"seed", std::to_string(seed)}});
   const RunRecord record = runLoop(loop);
   const auto folder =
       std::filesystem::path(resultsDir()) / (excitation + "_" + std::to_string(seed));

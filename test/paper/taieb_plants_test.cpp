@@ -72,7 +72,7 @@ TEST(SurgeTankModel, FindsARelativeDegreeOfTwoAndRunsFree) {
   }
   for (int seed = 2; seed <= 8; ++seed) {
     const DataSet other =
-        recordOf("surge_tank_excite", "surge_tank", {{"controller.seed", std::to_string(seed)}});
+        recordOf("surge_tank_excite", "surge_tank", {{"seed", std::to_string(seed)}});
     const double fit = validateModel(model, model, other)[0].free_run.fit;
     std::printf("free run on the record of seed %d: fit %.3f %%\n", seed, fit);
     EXPECT_GE(fit, 99.5) << "seed " << seed;

@@ -90,7 +90,7 @@ std::string pi(Dice& dice, RandomFrame& frame) {
 }
 
 std::string excitation(Dice& dice, RandomFrame& frame) {
-  std::string text = "  seed: " + std::to_string(dice.whole(0, 99)) + "\n  signals:\n";
+  std::string text = "  signals:\n";
   for (const auto& u : frame.plant.inputs) {
     const auto kind = dice.pick<std::string>({"prbs", "multi_level", "steps", "none"});
     text += "    - {input: " + u.name + ", signal: " + kind;

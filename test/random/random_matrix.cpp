@@ -38,7 +38,7 @@ std::string controller(Dice& dice, const MatrixSignals& signals, const std::stri
   if (!controllerType(loop.controller).needs_model)
     return "controller:\n  type: pi\n  loops:\n" + pi_loops;
   loop.files["model.yaml"] = matrixModel(dice, signals, 60.0 * sample_min);
-  const std::string guard = loop.seed % 2 == 0 ? "guard: {lock_samples: 4, lock_step: 0.3}\n" : "";
+  const std::string guard = loop.seed % 2 == 0 ? "guard: {lock_samples: 4}\n" : "";
   return "model: {file: model.yaml}\n" + guard + matrixLaw(dice, loop.controller, signals);
 }
 

@@ -20,8 +20,7 @@ std::string at(Dice& dice, const RandomFrame& frame) {
 }
 
 std::string pattern(Dice& dice, const std::vector<Quantity>& loads) {
-  std::string text =
-      "  pattern:\n    seed: " + std::to_string(dice.whole(0, 1000)) + "\n    channels:\n";
+  std::string text = "  pattern:\n    channels:\n";
   for (const auto& q : loads) {
     const auto [lower, upper] = workingRange(q);
     text += "      " + q.name + ": {shape: " + (dice.chance(0.5) ? "flow" : "load") +
@@ -185,12 +184,12 @@ std::string randomDisturbance(Dice& dice, const RandomFrame& frame, RandomLoop& 
 }
 
 std::string randomNoise(Dice& dice, const RandomFrame& frame) {
-  if (dice.chance(0.5)) return "";
+  const std::string seed = "seed: " + std::to_string(dice.whole(0, 99)) + "\n";
+  if (dice.chance(0.5)) return seed;
   std::vector<std::string> std;
   for (const auto& q : frame.outputs)
     std.push_back(Dice::rounded(0.01 * (workingRange(q).second - workingRange(q).first)));
-  return "noise:\n  seed: " + std::to_string(dice.whole(0, 99)) +
-         "\n  std: " + byName(namesOf(frame.outputs), std) + "\n";
+  return seed + "noise:\n  std: " + byName(namesOf(frame.outputs), std) + "\n";
 }
 
 std::string randomClp(Dice& dice, const RandomFrame& frame) {

@@ -71,7 +71,7 @@ RandomLoop randomShippedLoop(const std::string& type, std::uint64_t seed) {
   for (const auto& one : shortened(dice, shipped, frame)) overrides.push_back(one);
   if (dice.chance(0.7))
     overrides.push_back(noiseOf(dice, frame, namesOf(shipped.plant_info.outputs)));
-  overrides.emplace_back("noise.seed", std::to_string(dice.whole(0, 99)));
+  overrides.emplace_back("seed", std::to_string(dice.whole(0, 99)));
   if (dice.chance(0.5)) overrides.push_back(offsetOf(dice, frame));
   RandomLoop loop;
   loop.seed = seed;

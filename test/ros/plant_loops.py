@@ -114,7 +114,7 @@ class PlantLoops(unittest.TestCase):
 
     def test_faults_of_three_loops_change_no_bit_of_the_others(self):
         """One is killed, the plugin of one throws, the disk of one is full, while the others run. Each of those has a load of its own."""
-        good = {f"good_{i}": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 1000, "disturbance.pattern.seed": i}} for i in range(1, 13)}
+        good = {f"good_{i}": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 1000, "seed": i}} for i in range(1, 13)}
         self.in_process(self.plant({"pace": "lockstep", "loops": good}))
         before = small_disk(self, os.path.join(self.topics, "full"))
         plant = self.plant({"pace": "lockstep", "loops": {

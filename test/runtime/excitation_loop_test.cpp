@@ -16,7 +16,7 @@ namespace loop_excitation_loop_test {
 
 std::string experiment(const std::string& signal) {
   return "plant:\n  type: activated_sludge\nsampling:\n  sample_time_s: 720\n  duration_h: 20\n"
-         "controller:\n  type: excitation\n  seed: 3\n  signals:\n    - {input: q_r, " +
+         "seed: 3\ncontroller:\n  type: excitation\n  signals:\n    - {input: q_r, " +
          signal + "}\n";
 }
 

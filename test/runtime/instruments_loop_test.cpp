@@ -68,7 +68,7 @@ bool growsIn(const RunRecord& run) {
 }
 
 Overrides noisy(double std, int seed, const Overrides& more) {
-  Overrides all{{"noise.std.CA", std::to_string(std)}, {"noise.seed", std::to_string(seed)}};
+  Overrides all{{"noise.std.CA", std::to_string(std)}, {"seed", std::to_string(seed)}};
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }

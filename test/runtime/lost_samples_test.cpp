@@ -12,7 +12,7 @@ namespace loop_lost_samples_test {
 
 /// From sample 1 on: where sample 0 is lost nobody has set a reference for it.
 double iseOf(const std::string& name, const std::string& lost, const std::string& seed) {
-  const LoopFile loop = readLoop(name, {{"sensors.CA.lost", lost}, {"noise.seed", seed}});
+  const LoopFile loop = readLoop(name, {{"sensors.CA.lost", lost}, {"seed", seed}});
   const RunRecord record = runLoop(loop);
   double sum = 0.0;
   for (std::size_t k = 1; k < record.samples.size(); ++k) {

@@ -51,7 +51,7 @@ TEST(Run, ThePrintedTextGivesTheSameBits) {
 
 TEST(Run, AnotherSeedGivesAnotherWeek) {
   const RunRecord one = runLoop(shortLoop("asp_case1_pi_x"));
-  const RunRecord two = runLoop(shortLoop("asp_case1_pi_x", {{"disturbance.pattern.seed", "2"}}));
+  const RunRecord two = runLoop(shortLoop("asp_case1_pi_x", {{"seed", "2"}}));
   EXPECT_NE(one.samples[50].state.disturbances, two.samples[50].state.disturbances);
 }
 

@@ -215,7 +215,7 @@ TEST_F(Tune, TheTunedFileRunsWithTheCostThatWasFound) {
   EXPECT_EQ(text.rfind("# by a test\nextends: ", 0), 0U) << text;
   const std::string file = write("lag_tuned.yaml", text);
   for (const char* seed : {"1", "2"}) {
-    const LoopFile loop = readLoop(file, {{"noise.seed", seed}});
+    const LoopFile loop = readLoop(file, {{"seed", seed}});
     EXPECT_EQ(loop.controllerParams<PiParams>().loops.front().kp, best.values[0]);
     const double cost = fitness(judge.tuning().fitness, loop, runLoop(loop));
     EXPECT_EQ(cost, best.scenarios[static_cast<std::size_t>(seed[0] - '1')]);

@@ -17,7 +17,7 @@ inline std::string lagLoop() {
          "    elements: [{output: y, from: u, gain: 2, time_constant_min: 10, dead_time_min: 1}]\n"
          "sampling: {sample_time_s: 60, duration_h: 1}\n"
          "setpoint: {initial: {y: 1}, schedule: [{time_h: 0.5, y: 0.5}]}\n"
-         "noise: {seed: 1, std: {y: 0.001}}\n"
+         "noise: {std: {y: 0.001}}\n"
          "controller:\n  type: pi\n  loops:\n    - {input: u, output: y, kp: 0.2, ki_per_h: 0.5}\n";
 }
 

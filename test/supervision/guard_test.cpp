@@ -287,7 +287,6 @@ TEST_F(Guard, MistakesNameTheirKey) {
   names(errorWith([](GuardParams& p) { p.trust_high = 0.1; }), "guard.trust");
   names(errorWith([](GuardParams& p) { p.return_samples = 0; }), "guard.return_samples");
   names(errorWith([](GuardParams& p) { p.lock_samples = -1; }), "guard.lock_samples");
-  names(errorWith([](GuardParams& p) { p.lock_step = 2.0; }), "guard.lock_step");
   names(errorWith([](GuardParams& p) { p.growing_swings = 2; }), "guard.growing_swings");
   names(errorWith([](GuardParams& p) { p.growing_swings = 6; }), "guard.fallback");
   names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "outputs that the law follows");

@@ -47,7 +47,7 @@ TEST_F(NewTool, TheLawIsCheaperThanThePiUnderNoiseThatNothingWasChosenBy) {
   const auto meanIse = [&](const std::string& file) {
     double sum = 0.0;
     for (const char* seed : {"21", "22", "23", "24", "25"}) {
-      const LoopFile loop = readLoop(path("new") + file, {{"noise.seed", seed}});
+      const LoopFile loop = readLoop(path("new") + file, {{"seed", seed}});
       sum += summarize(loop, runLoop(loop), 0.0).outputs.front().ise;
     }
     return sum / 5.0;

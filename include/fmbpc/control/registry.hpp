@@ -33,6 +33,7 @@ struct ControllerContext {
   /// @throws InputError for a plant that has no such model.
   std::function<std::unique_ptr<SampleModel>()> plant_model;
   bool quantised{false};  ///< the resolution of an output is stated
+  std::uint64_t seed{1};  ///< of the run, for what a controller draws
 
   std::vector<std::string> outputs() const;       ///< names, in the order of PlantInfo
   std::vector<std::string> inputs() const;        ///< names

@@ -37,8 +37,9 @@ void requireTargets(const std::vector<int>& outputs, Eigen::Index n_y, Eigen::In
   const bool inside = std::all_of(outputs.begin(), outputs.end(),
                                   [n_y](int o) { return o >= 0 && o < static_cast<int>(n_y); });
   const bool enough = outputs.empty() || static_cast<Eigen::Index>(outputs.size()) == n_u;
-  require(distinct && inside && enough, "clp.target_outputs",
-          "as many different outputs as there are inputs");
+  require(distinct && inside && enough, "clp.cost",
+          "least_perturbation and absolute bounds where the law steers " +
+              std::to_string(outputs.size()) + " outputs by " + std::to_string(n_u) + " inputs");
 }
 
 void fillIfEmpty(Vector& field, Eigen::Index size, double value) {
@@ -68,7 +69,7 @@ void ClpParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   }
   requireTargets(target_outputs, n_y, n_u);
   if (needsTarget(*this) && n_y != n_u) {
-    require(!target_outputs.empty(), "clp.target_outputs",
+    require(!target_outputs.empty(), "clp.cost",
             "as many outputs as there are inputs, for lq and for incremental bounds");
   }
   qp.validate();

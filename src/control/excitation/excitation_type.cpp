@@ -100,7 +100,7 @@ ExcitationFeedback readFeedback(YamlSection& item, const ControllerContext& loop
 
 ExcitationParams readExcitation(YamlSection& section, const ControllerContext& loop) {
   ExcitationParams params;
-  section.seed("seed", params.seed);
+  params.seed = loop.seed;
   need(section, "signals", "a list of signals, one for each input that moves");
   std::set<int> moved;
   for (auto& item : section.list("signals")) {
