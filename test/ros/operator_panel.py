@@ -26,6 +26,18 @@ import ring
 PASSWORD = "correct horse"
 AWAY_S = 60 if os.environ.get("FMBPC_LONG_TESTS") else 6
 
+# Where these parts of the page were since then, in pixels of the page, unless somebody types into a field of it.
+PLACES = """
+const parts = %s, seen = window.seenAt = Object.fromEntries(parts.map((id) => [id, []]));
+setInterval(() => {
+  if (document.querySelector("[data-editor]")) return;
+  for (const id of parts) {
+    const at = document.getElementById(id).getBoundingClientRect().top + scrollY;
+    if (!seen[id].some((y) => Math.abs(y - at) < 2)) seen[id].push(at);
+  }
+}, 10);
+"""
+
 # Text whose contrast with what is behind it is below 4.5 to 1 (WCAG 2.1), of all that is seen.
 CONTRAST = """
 const lum = (c) => { const p = c.match(/[\\d.]+/g).map(Number), f = (v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }; return [0.2126 * f(p[0]) + 0.7152 * f(p[1]) + 0.0722 * f(p[2]), p.length > 3 ? p[3] : 1]; };
@@ -217,12 +229,16 @@ class Panel(unittest.TestCase):
     def test_4_why_the_valve_is_at_its_limit_and_an_alarm_that_is_acknowledged(self):
         self.login("olga")
         self.click(By.CSS_SELECTOR, "a.tile")
+        self.see(By.CSS_SELECTOR, "#charts .u-legend")
+        self.page.execute_script(PLACES % ["head", "outputs", "inputs", "charts", "disturbances"])
         self.see(*self.button("Manual")).click()
         self.said("manual since")
         self.type_into("input q_r", "9000" + Keys.ENTER)
         self.said("by hand since")
         self.assertIn("input_clamped", self.see(By.ID, "banner", "input_clamped").text)
         self.assertIn("upper limit 1600", self.see(By.CSS_SELECTOR, "#inputs td.reason", "upper").text)
+        places = self.page.execute_script("return window.seenAt")
+        self.assertEqual({part: 1 for part in places}, {part: len(tops) for part, tops in places.items()}, places)
         self.open()
         self.clicks = 0
         self.click(By.CSS_SELECTOR, "a.tile")

@@ -317,6 +317,7 @@ function renderBanner() {
           },
           "Acknowledge"));
   }
+  if (!parts.length) parts.push(h("span.soft", null, "No alarm."));
   put($("banner"), parts);
   put($("link"), [gone ? "✕ no connection" : S.heard ? "● connected " + wall(S.time || Date.now() / 1000) : "connecting …"]);
 }
@@ -454,7 +455,7 @@ function table(columns, rows) {
     h("tbody", null, rows));
 }
 const statusCell = (row) => h("td", { "data-h": "status" }, h("span.word." + row.status, null, row.status));
-const reasonCell = (row) => h("td.reason", { "data-h": row.reason ? "why" : null }, row.reason || "");
+const reasonCell = (row) => h("td.reason.still", { "data-h": "why" }, row.reason || "–");
 const range = (low, high) => (low === null && high === null
   ? "–"
   : `${low === null ? "−∞" : num(low, 4)} … ${high === null ? "∞" : num(high, 4)}`);
@@ -528,7 +529,7 @@ function loopView(force) {
     h("div.row", null,
       h("h1", null, l.title),
       h("span.word." + l.word, null, l.word),
-      h("span.soft", null, l.reason),
+      h("span.soft.why", { title: l.reason }, l.reason),
       h("span.end.num", null,
         l.step >= 0 ? `sample ${l.step} · ${runTime(l.seconds)} · ${wall(S.time || Date.now() / 1000)}` : "")),
     h("div.row", { style: null }, modeButtons(l))]);
@@ -567,10 +568,9 @@ function loopView(force) {
           cell("limits", range(y.lower, y.upper)),
           statusCell(y),
           reasonCell(y)))),
-      m.outputs.some((y) => y.predicted_in)
-        ? h("div.soft", null,
-          `predicted: ${m.outputs[0].predicted_in} samples ahead; steady: at the end of the plan; ✎ by an operator`)
-        : null]);
+      h("div.soft", null,
+        (m.outputs[0].predicted_in ? `predicted: ${m.outputs[0].predicted_in} samples ahead; ` : "") +
+          "steady: at the end of the plan; ✎ by an operator")]);
     put($("inputs"), [
       table(["", "#value", "#law asks", "limits", "in force", "#move", "mode", "status", "reason"],
         m.inputs.map((u) => h("tr", null,
@@ -592,7 +592,7 @@ function loopView(force) {
               : `asked ${u.target}, is ${u.actual}`),
           statusCell(u),
           reasonCell(u)))),
-      m.why ? h("p", null, h("b", null, "The law is turned aside: "), m.why, ".") : null]);
+      h("p.still", null, m.why ? [h("b", null, "The law is turned aside: "), m.why, "."] : null)]);
     put($("disturbances"), [
       m.disturbances.length
         ? table(["", "#value", "quality", "range", "status", "reason", ""],
