@@ -95,10 +95,9 @@ const std::vector<DataSet>& records() {
     const Structure structure = readStructure(findStructure("asp_d"));
     std::vector<DataSet> fresh(seeds());
     parallelFor(fresh.size(), 0, [&](std::size_t i) {
-      fresh[i] = excited("asp_excite", structure, static_cast<int>(i) + 1,
-                         {{"sampling.duration_h", "166"},
-                          {"controller.signals.0.lower", "400"},
-                          {"controller.signals.0.upper", "1600"}});
+      fresh[i] =
+          excited("asp_excite", structure, static_cast<int>(i) + 1,
+                  {{"sampling.duration_h", "166"}, {"controller.signals.0.range", "[400, 1600]"}});
     });
     return fresh;
   }();

@@ -27,9 +27,7 @@ struct Vaf {
 /// calm: our option, an inflow that swings a quarter as much.
 Vaf judged(const std::string& structure_name, bool own_record, bool calm, int seed) {
   Overrides inflow;
-  if (calm)
-    inflow = {{"disturbance.pattern.channels.q_i.lower", "1100"},
-              {"disturbance.pattern.channels.q_i.upper", "1500"}};
+  if (calm) inflow = {{"disturbance.pattern.channels.q_i.range", "[1100, 1500]"}};
   const Structure structure = readStructure(findStructure(structure_name));
   const DataSet data = excited("asp_excite", structure, seed, inflow);
   const Identification found = identify(data, structure);

@@ -223,6 +223,16 @@ void YamlSection::numbers(const std::string& key, std::vector<double>& value, Ra
   for (const auto& item : node) value.push_back(toNumber(item, key, range));
 }
 
+bool YamlSection::interval(const std::string& key, double& lower, double& upper, Range range) {
+  if (!raw(key).IsDefined()) return false;
+  std::vector<double> ends;
+  numbers(key, ends, range);
+  if (ends.size() != 2 || !(ends[0] <= ends[1])) fail(key, "[lower, upper] with lower <= upper");
+  lower = ends[0];
+  upper = ends[1];
+  return true;
+}
+
 std::vector<std::pair<double, double>> YamlSection::pairs(const std::string& key) {
   std::vector<std::pair<double, double>> all;
   const YAML::Node node = raw(key);

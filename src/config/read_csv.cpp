@@ -11,13 +11,9 @@ namespace {
 
 /// Other cells are missing ones.
 void readPlausible(YamlSection& section, CsvChannel& channel) {
-  std::vector<double> range;
-  section.numbers("plausible", range, kFinite);
-  if (!section.has("plausible")) return;
-  if (range.size() != 2 || !(range[0] < range[1]))
+  if (section.interval("plausible", channel.lower, channel.upper, kFinite) &&
+      !(channel.lower < channel.upper))
     section.fail("plausible", "[lower, upper] with lower < upper");
-  channel.lower = range[0];
-  channel.upper = range[1];
 }
 
 void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,

@@ -35,11 +35,10 @@ void readPattern(YamlSection& section, PatternParams& params,
     YamlSection channel = channels.section(name);
     PatternChannel value;
     value.name = name;
-    for (const char* key : {"shape", "lower", "upper", "mean"}) need(channel, key, "a value");
+    for (const char* key : {"shape", "range", "mean"}) need(channel, key, "a value");
     channel.oneOf("shape", value.shape, {"flow", "load"});
-    channel.number("lower", value.lower, kFinite);
-    channel.number("upper", value.upper, kFinite);
-    if (!(value.lower < value.upper)) channel.fail("upper", "a number > lower");
+    channel.interval("range", value.lower, value.upper, kFinite);
+    if (!(value.lower < value.upper)) channel.fail("range", "[lower, upper] with lower < upper");
     channel.number("mean", value.mean, {value.lower, value.upper, true});
     channel.finish();
     params.channels.push_back(std::move(value));

@@ -9,11 +9,7 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.sectionOrOff("guard", off);
   GuardParams& guard = loop.guard;
   guard.enabled = !off;
-  std::vector<double> trust{guard.trust_low, guard.trust_high};
-  section.numbers("trust", trust, {0.0, 1.0});
-  if (trust.size() != 2) section.fail("trust", "[low, high]");
-  guard.trust_low = trust[0];
-  guard.trust_high = trust[1];
+  section.interval("trust", guard.trust_low, guard.trust_high, {0.0, 1.0});
   section.integer("look_ahead", guard.look_ahead, 0);
   section.integer("horizon_least", guard.horizon_least, 0);
   section.integer("return_samples", guard.return_samples, 1);

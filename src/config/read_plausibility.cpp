@@ -39,9 +39,7 @@ SignalPlausibility defaultsOf(const SignalInfo& signal, bool is_output) {
 }
 
 void readSignal(YamlSection& section, bool is_output, SignalPlausibility& asked) {
-  section.number("lower", asked.lower, {});
-  section.number("upper", asked.upper, {});
-  if (!(asked.lower <= asked.upper)) section.fail("upper", "a number >= lower");
+  section.interval("range", asked.lower, asked.upper, {});
   section.number("rate_per_h", asked.rate_per_h, {0.0, kInfinity, true});
   section.number("jump", asked.jump, {0.0, kInfinity, true});
   section.boolean("frozen", asked.frozen);

@@ -79,8 +79,7 @@ void readFrame(YamlSection& item, EquipmentFrame& frame) {
   item.finish();
 }
 
-void readFrames(YamlSection& section, std::vector<EquipmentFrame>& frames) {
-  YamlSection items = section.section("frames");
+void readFrames(YamlSection& items, std::vector<EquipmentFrame>& frames) {
   for (const auto& name : items.keys()) {
     YamlSection item = items.section(name);
     auto known =
@@ -136,13 +135,6 @@ const std::set<std::string> kSummaryKeys{
     "loop",   "title",  "run_id",     "first_step",     "complete", "steps",   "wall_s", "outputs",
     "inputs", "limits", "violations", "actuator_clips", "clp",      "sources", "events"};
 
-/// A key in seconds, kept in hours.
-void readHours(YamlSection& section, const std::string& key, double& hours) {
-  double seconds = 3600.0 * hours;
-  section.number(key, seconds, {0.0, 3.6e10});
-  if (section.has(key)) hours = seconds / 3600.0;
-}
-
 ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
   ReportWindow window;
   need(item, "name", "a name");
@@ -150,10 +142,11 @@ ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outpu
   item.text("output", window.output);
   if (item.has("output") && std::count(outputs.begin(), outputs.end(), window.output) == 0)
     item.fail("output", "one of " + join(outputs));
-  window.to_h = -1.0;
-  readHours(item, "from_s", window.from_h);
-  readHours(item, "to_s", window.to_h);
-  if (!(window.to_h >= window.from_h)) item.fail("to_s", "a time not before from_s");
+  double from_s = 0.0, to_s = 0.0;
+  if (!item.interval("between_s", from_s, to_s, kFiniteNotNegative))
+    item.fail("between_s", "[from, to]");
+  window.from_h = from_s / 3600.0;
+  window.to_h = to_s / 3600.0;
   item.finish();
   return window;
 }
@@ -206,8 +199,10 @@ void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   loop.tf.frames = names.plant.frames;
   if (loop.external_plant) loop.tf.frames = {{loop.plant_info.frame_id, "", 0.0, 0.0, 0.0}};
   loop.simulation.output_delay_s.assign(names.outputs.size(), 0.0);
-  section.boolean("broadcast", loop.tf.broadcast);
-  readFrames(section, loop.tf.frames);
+  bool outside = false;
+  YamlSection frames = section.sectionOrOff("frames", outside);
+  loop.tf.broadcast = !outside;
+  readFrames(frames, loop.tf.frames);
   for (const auto& frame : loop.tf.frames) positionOf(frame.name, loop.tf.frames, section);
   for (auto& item : section.list("sample_lines")) readLine(item, section, loop, names);
   section.finish();

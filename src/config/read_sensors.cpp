@@ -12,8 +12,7 @@ namespace {
 /// A benchmark class; what else the section says goes over it.
 void readClass(YamlSection& section, SensorParams& params) {
   std::optional<SensorClass> kind;
-  section.number("lower", params.lower, {});
-  section.number("upper", params.upper, {});
+  section.interval("range", params.lower, params.upper, {});
   readOption(section, "class", kind,
              {{"none", std::nullopt},
               {"A", SensorClass::kA},
@@ -39,14 +38,7 @@ SensorParams readSensor(YamlSection& section) {
   section.number("resolution", params.resolution, kFiniteNotNegative);
   section.boolean("average", params.average);
   section.number("lost", params.lost, {0.0, 1.0});
-  std::vector<double> stuck_h;
-  section.numbers("stuck_h", stuck_h, kFiniteNotNegative);
-  if (section.has("stuck_h")) {
-    if (stuck_h.size() != 2 || stuck_h[0] > stuck_h[1])
-      section.fail("stuck_h", "[from, to] with from <= to");
-    params.stuck_from_h = stuck_h[0];
-    params.stuck_to_h = stuck_h[1];
-  }
+  section.interval("stuck_h", params.stuck_from_h, params.stuck_to_h, kFiniteNotNegative);
   checked(section, [&] { params.validate(); });
   section.finish();
   return params;

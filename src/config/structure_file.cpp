@@ -47,16 +47,10 @@ std::vector<StructureSignal> readSignals(YamlSection& top, const std::string& ke
     YamlSection body = section.section(name);
     body.text("column", signal.column);
     body.text("unit", signal.info.unit);
-    std::vector<double> range;
-    body.numbers("plausible", range);
-    if (body.has("plausible")) {
-      if (range.size() != 2 || !(range[0] < range[1]))
-        body.fail("plausible", "[lower, upper] with lower < upper");
-      signal.info.lower = range[0];
-      signal.info.upper = range[1];
-    } else if (body.has("implausible")) {
-      body.fail("implausible", "the key plausible with it");
-    }
+    const bool known = body.interval("plausible", signal.info.lower, signal.info.upper);
+    if (!(signal.info.lower < signal.info.upper))
+      body.fail("plausible", "[lower, upper] with lower < upper");
+    if (!known && body.has("implausible")) body.fail("implausible", "the key plausible with it");
     readOption(body, "implausible", signal.implausible);
     body.finish();
     signals.push_back(signal);

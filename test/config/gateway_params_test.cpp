@@ -142,9 +142,9 @@ TEST(PlausibilityFile, ErrorsNameKeyAndWhatWasExpected) {
   const auto error = [](const std::string& text) {
     return errorOf([&] { gatewayLoop("  type: none\nplausibility: " + text + "\n"); });
   };
-  expectWords(error("{signals: {level: {lower: 5}}}"), {"plausibility.signals.level.upper"});
+  expectWords(error("{signals: {level: {range: [5, 1]}}}"), {"plausibility.signals.level.range"});
   expectWords(error("{signals: {level: {substitute: guess}}}"), {"substitute", "last_good"});
-  expectWords(error("{signals: {inflow: {lower: 5}}}"), {"plausibility.signals", "inflow"});
+  expectWords(error("{signals: {inflow: {range: [5, 6]}}}"), {"plausibility.signals", "inflow"});
   expectWords(error("{hold_samples: -2}"), {"hold_samples"});
 }
 

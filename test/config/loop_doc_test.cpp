@@ -87,7 +87,7 @@ std::set<std::string> readerKeys() {
   const std::string lists =
       "setpoint:\n  schedule: [{time_h: 0, s: 1}]\n  commands: [{time_h: 0, name: s, value: 1}]\n"
       "disturbance:\n  source: constant\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
-      "  pattern: {channels: {q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}\n"
+      "  pattern: {channels: {q_i: {shape: flow, range: [1, 3], mean: 2}}}\n"
       "  csv: {channels: {q_i: {column: a, plausible: [0, 1]}}}\n"
       "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {plant: "
       "{position: [1, 0, 0]}}\n"
@@ -118,7 +118,7 @@ std::set<std::string> readerKeys() {
       "\n  forbidden_transitions: [{from: {kM: 0}, to: {kM: 2}}]\n"
       "  cost: {switching: [{before: kH, after: kC, weight: 1}], travel: [{input: kM, weight: "
       "1}]}\n"
-      "report: {windows: [{name: w, to_s: 3600}], consumption: {water_kg: {kM: 1}}}\n";
+      "report: {windows: [{name: w, between_s: [0, 3600]}], consumption: {water_kg: {kM: 1}}}\n";
   const std::string signal = "[{name: NAME, unit: g, nominal: 0, lower: -1, upper: 1}]";
   const auto named = [&](const std::string& name) {
     return std::regex_replace(signal, std::regex("NAME"), name);
@@ -256,8 +256,7 @@ std::map<std::string, std::string> structDefaults() {
           {"seed", std::to_string(loop.simulation.noise_seed)},
           {"loop.speedup", exactText(loop.ring.speedup)},
           {"loop.ready_timeout_s", exactText(loop.ring.ready_timeout_s)},
-          {"loop.publish_clock", word(loop.ring.publish_clock)},
-          {"tf.broadcast", word(loop.tf.broadcast)}};
+          {"loop.publish_clock", word(loop.ring.publish_clock)}};
 }
 
 double asNumber(const std::string& text) { return YAML::Load(text).as<double>(std::nan("")); }

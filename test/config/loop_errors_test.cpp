@@ -121,7 +121,7 @@ const Mistake kMistakes[] = {
      {"actuator.input_"}},
     {"MeanOutside",
      "disturbance:\n  source: pattern\n  pattern:\n    channels:\n"
-     "      q_i: {shape: flow, lower: 700, upper: 2300, mean: 3000}\n",
+     "      q_i: {shape: flow, range: [700, 2300], mean: 3000}\n",
      "",
      {":16: disturbance.pattern.channels.q_i.mean", "> 700"}},
     {"TimesDecrease",
@@ -242,7 +242,7 @@ TEST_F(LoopErrors, ARecordForYearsOfSamplesIsRefusedBeforeItIsMade) {
   const std::string file =
       write("long.yaml", smallLoop() +
                              "disturbance: {source: pattern, pattern: {channels: "
-                             "{q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}}\n");
+                             "{q_i: {shape: flow, range: [1, 3], mean: 2}}}}\n");
   const Overrides years{{"sampling.duration_h", "9000000"}};
   expectWords(errorOf([&] { readLoop(file, years); }),
               {"sampling.duration_h", "at most 10000000 samples"});

@@ -74,7 +74,7 @@ TEST(LoopSections, WhatSignalsMayBeIsKnownByDefault) {
   EXPECT_FALSE(plain.plausibility.range_falls) << "an initial input is no fallback";
   EXPECT_TRUE(
       readLoop("asp_case1_pi_x", {{"actuator.fallback.q_r", "800"}}).plausibility.range_falls);
-  const LoopFile slow = readLoop("asp_case1_pi_x", {{"sensors.x", "{upper: 3000}"}});
+  const LoopFile slow = readLoop("asp_case1_pi_x", {{"sensors.x", "{range: [-.inf, 3000]}"}});
   EXPECT_EQ(slow.plausibility.outputs[1].scale_upper, 3000.0);
 }
 

@@ -23,9 +23,9 @@ std::string pattern(Dice& dice, const std::vector<Quantity>& loads) {
   std::string text = "  pattern:\n    channels:\n";
   for (const auto& q : loads) {
     const auto [lower, upper] = workingRange(q);
-    text += "      " + q.name + ": {shape: " + (dice.chance(0.5) ? "flow" : "load") +
-            ", lower: " + exactText(lower) + ", upper: " + exactText(upper) +
-            ", mean: " + exactText(lower + (upper - lower) * dice.between(0.3, 0.7)) + "}\n";
+    text += "      " + q.name + ": {shape: " + (dice.chance(0.5) ? "flow" : "load") + ", range: [" +
+            exactText(lower) + ", " + exactText(upper) +
+            "], mean: " + exactText(lower + (upper - lower) * dice.between(0.3, 0.7)) + "}\n";
   }
   return text;
 }

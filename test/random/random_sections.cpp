@@ -32,8 +32,8 @@ std::string sensor(Dice& dice, const Quantity& q, const RandomFrame& frame) {
   }
   if (dice.chance(0.3)) {
     const double reach = std::max(q.upper - q.lower, 0.0);
-    keys.push_back("lower: " + exactText(q.lower));
-    keys.push_back("upper: " + exactText(std::isfinite(reach) ? q.upper : q.nominal + 1e6));
+    keys.push_back("range: [" + exactText(q.lower) + ", " +
+                   exactText(std::isfinite(reach) ? q.upper : q.nominal + 1e6) + "]");
   }
   if (keys.empty()) keys.emplace_back("average: false");
   return "  " + q.name + ": {" + join(keys) + "}\n";

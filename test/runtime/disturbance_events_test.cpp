@@ -84,7 +84,7 @@ TEST_F(DisturbanceEvents, AWindowBeyondTheRunIsSaid) {
   const auto said = [](const char* from) {
     const LoopFile loop = readLoop(
         "heated_tank",
-        {{"report.windows", "[{name: late, from_s: " + std::string(from) + ", to_s: 43200}]"}});
+        {{"report.windows", "[{name: late, between_s: [" + std::string(from) + ", 43200]}]"}});
     return says(summarize(loop, runLoop(loop), 0.0), EventCode::kBeyondRun);
   };
   EXPECT_TRUE(said("36000"));

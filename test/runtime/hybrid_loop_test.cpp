@@ -15,8 +15,8 @@ LoopFile read(const Overrides& overrides) { return readLoop("batch_fuzzy_eq45", 
 TEST(HybridLoop, WindowsAndConsumptionAreSumsOverTheRecord) {
   const LoopFile loop =
       read({{"sampling.duration_h", "0.5"},
-            {"report.windows", "[{name: w, output: T, from_s: 600, to_s: 1200}, {name: v}]"},
-            {"report.windows.1.to_s", "0"}});
+            {"report.windows", "[{name: w, output: T, between_s: [600, 1200]}, {name: v}]"},
+            {"report.windows.1.between_s", "[0, 0]"}});
   const RunRecord record = runLoop(loop);
   const Summary summary = summarize(loop, record, 0.0);
   ASSERT_EQ(summary.windows.size(), 3U);  // w of T, v of T, v of Tw
@@ -48,7 +48,7 @@ TEST(HybridLoop, MistakesAreNamed) {
   expectWords(error("controller.cost.tracking", "{T: -1}"), {"controller.cost.tracking.T"});
   expectWords(error("controller.node_budget", "20"), {"budget", "28"});
   expectWords(error("actuator.fallback", "{kM: 0.5}"), {"fallback", "controller.inputs"});
-  expectWords(error("report.windows", "[{name: w, from_s: 2, to_s: 1}]"),
+  expectWords(error("report.windows", "[{name: w, between_s: [2, 1]}]"),
               {"report.windows[0].to_s"});
   expectWords(error("report.consumption", "{steps: {kM: 1}}"), {"report.consumption.steps"});
   expectWords(error("model", "{}"), {"model.file", "hybrid_mpc"});

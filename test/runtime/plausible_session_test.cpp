@@ -16,7 +16,7 @@ namespace loop_plausible_session_test {
 /// 120 samples of the activated sludge loop; x may be in [0, 3500] and more.
 LoopFile loopWith(const Overrides& more) {
   Overrides overrides{{"sampling.duration_h", "24"},
-                      {"plausibility.signals.x.upper", "3000"},
+                      {"plausibility.signals.x.range", "[-1000, 3000]"},
                       {"actuator.hold_samples", "4"},
                       {"actuator.fallback.q_r", "300"}};
   overrides.insert(overrides.end(), more.begin(), more.end());

@@ -61,7 +61,7 @@ TEST_F(RecordStoreTest, AlsoWithHolesWindowsAndALateStart) {
   const LoopFile loop =
       readLoop("asp_case1", {{"sampling.duration_h", "8"},
                              {"report.record_from_h", "3"},
-                             {"report.windows", "[{name: late, from_s: 7200, to_s: 21600}]"}});
+                             {"report.windows", "[{name: late, between_s: [7200, 21600]}]"}});
   RunRecord record = runLoop(loop);
   for (const std::size_t hole : {5, 20, 21}) record.samples[hole] = SampleRecord();
   record.samples[7].has_tracking = record.samples[9].has_action = false;

@@ -31,8 +31,8 @@ void fail(RunRecord& record, double value, Eigen::Index output = kX) {
 TEST(RejectedScores, OfASimulatedPlantAreThoseOfWhatWasTrue) {
   const LoopFile loop =
       readLoop("asp_case1_pi_x", {{"sampling.duration_h", "10"},
-                                  {"plausibility.signals.x.upper", "3000"},
-                                  {"report.windows", "[{name: w, from_s: 7200, to_s: 25200}]"}});
+                                  {"plausibility.signals.x.range", "[-1000, 3000]"},
+                                  {"report.windows", "[{name: w, between_s: [7200, 25200]}]"}});
   const RunRecord record = recordOf(loop);
   const Summary well = summarize(loop, record, 0.0);
   EXPECT_EQ(well.outputs[kX].rejected, 0U);
@@ -55,8 +55,9 @@ TEST(RejectedScores, OfASimulatedPlantAreThoseOfWhatWasTrue) {
 }
 
 TEST(RejectedScores, OfAnotherPlantLeaveThemOut) {
-  const LoopFile loop = readLoop(
-      "asp_case1_pi_x", {{"sampling.duration_h", "10"}, {"plausibility.signals.x.upper", "3000"}});
+  const LoopFile loop =
+      readLoop("asp_case1_pi_x",
+               {{"sampling.duration_h", "10"}, {"plausibility.signals.x.range", "[-1000, 3000]"}});
   RunRecord record = recordOf(loop);
   fail(record, 9e9);
   double ise = 0.0, itae = 0.0;
@@ -79,8 +80,8 @@ TEST(RejectedScores, OfAnotherPlantLeaveThemOut) {
 }
 
 TEST(RejectedScores, ARejectedMeasurementIsNotOutsideTheModel) {
-  const LoopFile loop = readLoop(
-      "asp_best", {{"sampling.duration_h", "10"}, {"plausibility.signals.x.upper", "9000"}});
+  const LoopFile loop = readLoop("asp_best", {{"sampling.duration_h", "10"},
+                                              {"plausibility.signals.x.range", "[-1000, 9000]"}});
   RunRecord record = recordOf(loop);
   const std::uint64_t before = summarize(loop, record, 0.0).outside_model;
   const std::vector<SignalInfo>& outputs = loop.plant_info.outputs;

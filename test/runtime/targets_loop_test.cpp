@@ -54,7 +54,8 @@ TEST(TargetsLoop, FewerInputsThanOutputsGiveUpTheLowerRank) {
 }
 
 TEST(TargetsLoop, AZoneUpsideDownIsAnError) {
-  EXPECT_THROW(readLoop("tanks_three_pumps", {{"targets.outputs.h1.lower", "50"}}), InputError);
+  EXPECT_THROW(readLoop("tanks_three_pumps", {{"targets.outputs.h1.zone", "[50, 40]"}}),
+               InputError);
 }
 
 TEST(TargetsLoop, WithoutTheSectionNothingChanges) {

@@ -62,9 +62,8 @@ void validateLevels(const ExcitationSignal& s, const std::string& key, const Inp
   for (const double level : s.levels) require(inside(level), key + "levels", expected);
   if (s.signal == ExcitationKind::kMultiLevel && !s.levels.empty()) return;
   if (s.signal == ExcitationKind::kPrbs || s.signal == ExcitationKind::kMultiLevel) {
-    require(inside(s.lower), key + "lower", expected);
-    require(inside(s.upper), key + "upper", expected);
-    require(s.lower < s.upper, key + "upper", "a number above lower");
+    require(inside(s.lower) && inside(s.upper) && s.lower < s.upper, key + "range",
+            "[lower, upper] " + numbersWithin(lower, upper) + ", lower < upper");
   }
   for (const ExcitationStep& entry : s.schedule)
     require(inside(entry.value), key + "schedule", "values " + numbersWithin(lower, upper));

@@ -35,19 +35,18 @@ void readRegister(YamlSection& item, ExcitationSignal& signal, double sample_tim
 
 void readHolds(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
   item.numbers("levels", signal.levels, kFinite);
-  if (item.has("levels") && (item.has("lower") || item.has("upper")))
-    item.fail("levels", "either levels or lower and upper");
+  if (item.has("levels") && item.has("range")) item.fail("levels", "either levels or a range");
   if (item.has("levels") && signal.levels.empty()) item.fail("levels", "at least one number");
-  std::vector<double> hold_s;
-  item.numbers("hold_s", hold_s, kFiniteNotNegative);
-  if (hold_s.size() != 2) item.fail("hold_s", "[shortest, longest] time of a level");
+  double shortest_s = 0.0, longest_s = 0.0;
+  if (!item.interval("hold_s", shortest_s, longest_s, kFiniteNotNegative))
+    item.fail("hold_s", "[shortest, longest] time of a level");
   const auto samples = [&](double time_s) {
     const std::int64_t whole = wholeSamples(item, "hold_s", time_s, sample_time_s);
     if (whole < 1) item.fail("hold_s", "at least 1 sample");
     return static_cast<int>(whole);
   };
-  signal.hold_lower_steps = samples(hold_s[0]);
-  signal.hold_upper_steps = samples(hold_s[1]);
+  signal.hold_lower_steps = samples(shortest_s);
+  signal.hold_upper_steps = samples(longest_s);
 }
 
 void readStaircase(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
@@ -78,8 +77,7 @@ ExcitationSignal readSignal(YamlSection& item, const ControllerContext& loop) {
   if (signal.signal == ExcitationKind::kPrbs || signal.signal == ExcitationKind::kMultiLevel) {
     signal.lower = bounds.lower;
     signal.upper = bounds.upper;
-    item.number("lower", signal.lower, bounds);
-    item.number("upper", signal.upper, bounds);
+    item.interval("range", signal.lower, signal.upper, bounds);
   }
   if (signal.signal == ExcitationKind::kPrbs) readRegister(item, signal, sample_time_s);
   if (signal.signal == ExcitationKind::kMultiLevel) readHolds(item, signal, sample_time_s);

@@ -25,10 +25,7 @@ double defaultUnit(const TargetOutput& output, const SignalInfo& about) {
 }
 
 void readOutput(YamlSection& section, const SignalInfo& about, TargetOutput& output) {
-  section.number("lower", output.lower);
-  section.number("upper", output.upper);
-  if (output.lower > output.upper)
-    section.fail("upper", "a limit not below lower, " + exactText(output.lower));
+  section.interval("zone", output.lower, output.upper);
   section.integer("rank", output.rank, 1, kMostRanks);
   section.boolean("setpoint", output.setpoint);
   output.unit = defaultUnit(output, about);
@@ -40,8 +37,7 @@ void readOutput(YamlSection& section, const SignalInfo& about, TargetOutput& out
 
 void readInput(YamlSection& section, TargetInput& input) {
   const double lower = input.lower, upper = input.upper;
-  section.number("lower", input.lower, {lower, upper});
-  section.number("upper", input.upper, {input.lower, upper});
+  section.interval("range", input.lower, input.upper, {lower, upper});
   section.number("rest", input.rest, {input.lower, input.upper});
   section.number("price", input.price, kFinite);
   section.finish();
@@ -55,7 +51,8 @@ void TargetParams::validate(const PlantInfo& plant, const InputLimits& limits) c
   require(std::isfinite(band) && band >= 0.0, "targets.band", "a finite number >= 0");
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::string field = "targets.outputs." + plant.outputs[i].name;
-    require(outputs[i].lower <= outputs[i].upper, field + ".upper", "a limit not below lower");
+    require(outputs[i].lower <= outputs[i].upper, field + ".zone",
+            "[lower, upper] with lower <= upper");
     require(outputs[i].unit > 0.0, field + ".unit", "a number > 0");
   }
   for (std::size_t i = 0; i < inputs.size(); ++i) {

@@ -241,7 +241,7 @@ TEST(ExcitationParams, MistakesNameTheField) {
   EXPECT_NE(errorOf(prbs(2)).find("signals[0].input"), std::string::npos);
   ExcitationSignal beyond = prbs(0);
   beyond.upper = 1000.5;
-  EXPECT_NE(errorOf(beyond).find("signals[0].upper"), std::string::npos);
+  EXPECT_NE(errorOf(beyond).find("signals[0].range"), std::string::npos);
   ExcitationSignal holds = multiLevel(0);
   holds.hold_upper_steps = 3;
   EXPECT_NE(errorOf(holds).find("signals[0].hold_s"), std::string::npos);
