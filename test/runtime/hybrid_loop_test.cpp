@@ -49,7 +49,7 @@ TEST(HybridLoop, MistakesAreNamed) {
   expectWords(error("controller.node_budget", "20"), {"budget", "28"});
   expectWords(error("actuator.fallback", "{kM: 0.5}"), {"fallback", "controller.inputs"});
   expectWords(error("report.windows", "[{name: w, between_s: [2, 1]}]"),
-              {"report.windows[0].to_s"});
+              {"report.windows[0].between_s"});
   expectWords(error("report.consumption", "{steps: {kM: 1}}"), {"report.consumption.steps"});
   expectWords(error("model", "{}"), {"model.file", "hybrid_mpc"});
 }
