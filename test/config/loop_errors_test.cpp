@@ -164,7 +164,7 @@ const Mistake kMistakes[] = {
     {"UnitThatWent",
      "",
      "report.windows=[{name: w, to_h: 1}]",
-     {"report.windows[0].to_h", "expected to_s"}},
+     {"report.windows[0].to_h", "expected between_s"}},
     {"KeyThatWentFromASignal",
      "targets: {outputs: {x: {setpoint_rank: 2}}}\n",
      "",
