@@ -255,6 +255,22 @@ class Panel(unittest.TestCase):
         self.see(By.ID, "entries", "input_clamped")
         self.see(By.ID, "entries", "by hand")
 
+    def test_4a_on_a_phone_nothing_moves_under_the_thumb(self):
+        panel_page.size(self.page, 360, 800)
+        self.login("olga")
+        self.click(By.CSS_SELECTOR, "a.tile")
+        self.see(By.CSS_SELECTOR, "#charts .u-legend")
+        self.page.execute_script(PLACES % ["head", "outputs", "inputs"])
+        self.see(*self.button("Manual")).click()
+        self.said("manual since")
+        self.type_into("input q_r", "9000" + Keys.ENTER)
+        self.said("by hand since")
+        self.see(By.CSS_SELECTOR, "#inputs td.reason", "upper limit 1600")
+        self.see(*self.button("Auto")).click()
+        self.said("auto since")
+        places = self.page.execute_script("return window.seenAt")
+        self.assertEqual({part: 1 for part in places}, {part: len(tops) for part, tops in places.items()}, places)
+
     def test_5_settings_are_the_engineers(self):
         self.login("olga")
         self.open("#/loop/%2Fa/model")

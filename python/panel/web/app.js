@@ -551,7 +551,7 @@ function loopView(force) {
           h("td.name", null, named(y)),
           cell("value", num(y.value), ".num"),
           cell("quality", y.quality),
-          h("td.num", { "data-h": "setpoint" },
+          h("td.num.ask", { "data-h": "setpoint" },
             editable(
               "set " + y.name,
               num(y.setpoint) + (y.by_hand ? " ✎" : ""),
@@ -575,7 +575,7 @@ function loopView(force) {
       table(["", "#value", "#law asks", "limits", "in force", "#move", "mode", "status", "reason"],
         m.inputs.map((u) => h("tr", null,
           h("td.name", null, named(u)),
-          h("td.num", { "data-h": "value" },
+          h("td.num.ask", { "data-h": "value" },
             manual
               ? editable("input " + u.name, num(u.value), `${u.name} by hand`, (text) => ask("input",
                 m.name,
@@ -584,7 +584,7 @@ function loopView(force) {
               : num(u.value)),
           cell("law asks", num(u.law), ".num"),
           cell("limits", range(u.lower, u.upper)),
-          cell("in force", range(u.active_lower, u.active_upper) + (u.active.length ? " · " + u.active.join(", ") : "")),
+          cell("in force", range(u.active_lower, u.active_upper) + (u.active.length ? " · " + u.active.join(", ") : ""), ".ask"),
           cell("move ≤", u.move === null ? "–" : num(u.move, 4), ".num"),
           cell("mode",
             u.target === u.actual || u.target === "auto"
