@@ -218,7 +218,7 @@ def column_run(case):
         del spec["targets"]
     else:
         inner = PURITIES + np.outer(np.broadcast_to(back_off, 2), (1, -1))
-        spec["targets"]["outputs"] = {n: {"lower": round(float(z[0]), 9), "upper": round(float(z[1]), 9), "rank": 1} for n, z in zip(COLUMN, inner)}
+        spec["targets"]["outputs"] = {n: {"zone": [round(float(z[0]), 9), round(float(z[1]), 9)], "rank": 1} for n, z in zip(COLUMN, inner)}
         spec["targets"]["band"] = 0.002
         if back_off == EQUAL_PURITY:
             spec["targets"].update(band=0, observer={"noise_std": 0.02, "disturbance_std": 0.0001})
@@ -314,7 +314,7 @@ AMMONIUM_MODEL = {"noise_std": 0.05, "disturbance_std": 0.01}
 def one_zone(upper):
     """Law `general` as in bsm1_fmbpc, its setpoint where air with a price lets ammonium rest below `upper`."""
     spec = fmbpc_yaml("bsm1_fmbpc")
-    spec["targets"] = {"outputs": {"S_NH5": {"lower": 0.05, "upper": upper, "rank": 1}}, "inputs": {"air": {"price": 1}}, "observer": AMMONIUM_MODEL}
+    spec["targets"] = {"outputs": {"S_NH5": {"zone": [0.05, upper], "rank": 1}}, "inputs": {"air": {"price": 1}}, "observer": AMMONIUM_MODEL}
     return spec
 
 
@@ -322,13 +322,13 @@ def two_zones(horizon, air_move, nitrate_move, upper, slow, nitrate_weight):
     """Law `iterated` on bsm1_nitrate: ammonium below `upper`, nitrate below 14, air with a price, the nitrate setpoint at 2.8."""
     spec = fmbpc_yaml("bsm1_fmbpc")
     spec["plant"]["outputs"] = ["S_NH5", "S_NO2", "S_NO5"]
-    spec["sensors"].update(S_NO2={"class": "B0", "lower": 0, "upper": 20}, S_NO5={"class": "B0", "lower": 0, "upper": 50})
+    spec["sensors"].update(S_NO2={"class": "B0", "range": [0, 20]}, S_NO5={"class": "B0", "range": [0, 50]})
     spec["model"] = {"file": "bsm1_nitrate.yaml"}
     spec["setpoint"]["initial"] = {"S_NH5": 1.0, "S_NO2": 1.5, "S_NO5": 12}
     moves = {**spec["controller"]["weight_move"], "air": air_move, "NO2": nitrate_move}
     spec["controller"] = {"type": "fmbpc", "law": "iterated", "horizon_steps": horizon, "reference_pole": 0, "weight_output": {"S_NH5": 1, "S_NO2": 0, "S_NO5": nitrate_weight},
                           "weight_move": moves, "weight_input": {"air": 0, "NO2": 5}, "realisation": "observer", "observer": {"noise_std": 0.05, "disturbance_std": 0.005}}
-    spec["targets"] = {"outputs": {"S_NH5": {"lower": 0.05, "upper": upper, "rank": 2}, "S_NO5": {"upper": 14, "rank": 1}},
+    spec["targets"] = {"outputs": {"S_NH5": {"zone": [0.05, upper], "rank": 2}, "S_NO5": {"zone": [-float("inf"), 14], "rank": 1}},
                        "inputs": {"air": {"price": 1}, "NO2": {"rest": 2.8}}, "observer": {"noise_std": 0.05, "disturbance_std": slow}}
     return spec
 
@@ -342,7 +342,7 @@ WEATHER = {"dry": {}, "rain": {"disturbance.csv.next.file": "${FMBPC_DATA}/bsm1_
 def with_noise(spec):
     """Noise on all analysers; every law but the supervisor, which samples three times as often, sees means, as bsm1_fmbpc_noise does."""
     for sensor in spec["sensors"].values():
-        sensor.update({"noise_std": 0.025 * (sensor["upper"] - sensor["lower"]), **({"average": True} if spec["controller"]["type"] == "fmbpc" else {})})
+        sensor.update({"noise_std": 0.025 * (sensor["range"][1] - sensor["range"][0]), **({"average": True} if spec["controller"]["type"] == "fmbpc" else {})})
     if "standstill" in spec:
         spec["standstill"].update(signals={"S_NH5": 0.01, "S_NH_in": 0.01, "Q_in": 10}, noise_window_h=24)
     return spec
@@ -424,14 +424,14 @@ def solids_rank(model, slow):
     """Solids below 30 before ammonium at its setpoint; Qw rests at 260 where the solids allow it."""
     spec = fmbpc_yaml("bsm1_fmbpc_sludge")
     spec["plant"]["outputs"] = ["S_NH5", "TSS_L1"]
-    spec["sensors"]["TSS_L1"] = {"class": "A", "lower": 0, "upper": 200}
+    spec["sensors"]["TSS_L1"] = {"class": "A", "range": [0, 200]}
     spec["model"] = {"file": model}
     spec["setpoint"]["initial"]["TSS_L1"] = 15
     noise = {"S_NH5": 0.05, "TSS_L1": 0.2}
     spec["controller"] = {"type": "fmbpc", "law": "iterated", "horizon_steps": 4, "reference_pole": 0, "weight_output": {"S_NH5": 1, "TSS_L1": 0},
                           "weight_move": {**spec["controller"]["weight_move"], "air": 0.5, "Qw": 1e-8}, "weight_input": {"air": 0, "Qw": 1e-5},
                           "realisation": "observer", "observer": {"noise_std": noise, "disturbance_std": {"S_NH5": 0.005, "TSS_L1": 0.05}}}
-    spec["targets"] = {"outputs": {"S_NH5": {"setpoint": True, "rank": 2}, "TSS_L1": {"upper": 30, "rank": 1}}, "inputs": {"Qw": {"rest": 260, "lower": 260}},
+    spec["targets"] = {"outputs": {"S_NH5": {"setpoint": True, "rank": 2}, "TSS_L1": {"zone": [-float("inf"), 30], "rank": 1}}, "inputs": {"Qw": {"rest": 260, "range": [260, spec["actuator"]["input_upper"]["Qw"]]}},
                        "observer": {"noise_std": noise, "disturbance_std": {"S_NH5": 0.002, "TSS_L1": slow}}}
     return spec
 

@@ -39,7 +39,7 @@ constexpr EventKind kKinds[] = {
     {C::kLawFailed, "law_failed", kE, "the law gave no finite input", "the input is held", "look at the model and at the tuning"},
     {C::kInputWithoutEffect, "input_without_effect", kW, "an input has no effect on the outputs at controller.coincidence_steps", "the input is held or rests", "set the horizon behind the longest delay"},
     {C::kHorizonTooShort, "horizon_too_short", kW, "controller.horizon_steps is too short: an input hardly acts within it", "the plan does not see what the input does", "set the horizon behind the longest delay"},
-    {C::kSolverLimit, "solver_limit", kW, "a search or solver reached its limit", "the best plan found so far is used", "raise the limit (iterations, node_budget), or shorten the horizon"},
+    {C::kSolverLimit, "solver_limit", kW, "a search or solver reached its limit", "the best plan found so far is used", "raise the limit (iterations), or shorten the horizon"},
     {C::kPlanNotFound, "plan_not_found", kW, "the solver found no usable plan", "the plan of the sample before goes on", "look at weights, limits and the model"},
     {C::kNoAllowedInput, "no_allowed_input", kW, "no sequence of inputs is allowed", "the nearest allowed input is sent", "look at controller.inputs and the input's position"},
     {C::kReferenceHeldBack, "reference_held_back", kI, "an output is farther from its reference than controller.reference_holdback", "the law aims at a nearer reference", "none, after an upset; else raise reference_holdback"},

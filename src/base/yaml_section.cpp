@@ -223,23 +223,27 @@ void YamlSection::numbers(const std::string& key, std::vector<double>& value, Ra
   for (const auto& item : node) value.push_back(toNumber(item, key, range));
 }
 
-bool YamlSection::interval(const std::string& key, double& lower, double& upper, Range range) {
-  if (!raw(key).IsDefined()) return false;
-  std::vector<double> ends;
-  numbers(key, ends, range);
-  if (ends.size() != 2 || !(ends[0] <= ends[1])) fail(key, "[lower, upper] with lower <= upper");
-  lower = ends[0];
-  upper = ends[1];
+bool YamlSection::interval(const std::string& key, double& lower, double& upper, Range range,
+                           const std::string& what) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return false;
+  const std::string expected = what + ", two numbers that do not decrease";
+  if (!node.IsSequence() || node.size() != 2) fail(key, expected);
+  const double first = toNumber(node[0], key, range), second = toNumber(node[1], key, range);
+  if (!(first <= second)) fail(key, expected);
+  lower = first;
+  upper = second;
   return true;
 }
 
-std::vector<std::pair<double, double>> YamlSection::pairs(const std::string& key) {
+std::vector<std::pair<double, double>> YamlSection::pairs(const std::string& key,
+                                                          const std::string& what) {
   std::vector<std::pair<double, double>> all;
   const YAML::Node node = raw(key);
   if (!node.IsDefined()) return all;
-  if (!node.IsSequence()) fail(key, "a list of pairs of numbers, [[x, y], ...]");
+  if (!node.IsSequence()) fail(key, what);
   for (const auto& item : node) {
-    if (!item.IsSequence() || item.size() != 2) fail(key, "pairs of numbers, [[x, y], ...]");
+    if (!item.IsSequence() || item.size() != 2) fail(key, what);
     all.emplace_back(toNumber(item[0], key, {}), toNumber(item[1], key, {}));
   }
   return all;

@@ -84,6 +84,9 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
   section.byName("output_lower", clp.output_lower, names.outputs);
   section.byName("output_upper", clp.output_upper, names.outputs);
   section.number("output_penalty", clp.output_penalty, kFinitePositive);
+  YamlSection qp = section.section("qp");
+  qp.integer("max_iterations", clp.qp.max_iterations, 1);
+  qp.finish();
 }
 
 bool isThere(const YamlSection& root, const std::string& name) {

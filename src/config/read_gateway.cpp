@@ -13,7 +13,7 @@ namespace fpc {
 namespace {
 
 constexpr int kLastRegister = 65535;
-constexpr double kTimeoutPolls = 2.5, kShortestTimeout = 0.2;  // [s], of an answer
+constexpr double kTimeoutPolls = 2.5, kShortestTimeout = 0.5, kLongestTimeout = 2.0;  // [s]
 
 /// Of a number that is read: holding registers, or input registers.
 void readTable(YamlSection& section, ModbusTag& tag) {
@@ -91,7 +91,7 @@ void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   section.integer("port", modbus.port, 1, 65535);
   section.integer("unit", modbus.unit, 0, 255);
   section.number("poll_s", modbus.poll_s, {1e-3, 3600.0});
-  modbus.timeout_s = std::max(kShortestTimeout, kTimeoutPolls * modbus.poll_s);
+  modbus.timeout_s = std::clamp(kTimeoutPolls * modbus.poll_s, kShortestTimeout, kLongestTimeout);
   readOption(section, "word_order", order);
   readBit(section, "automatic_coil", modbus.automatic);
   readBit(section, "remote_coil", modbus.remote);

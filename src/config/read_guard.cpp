@@ -9,7 +9,7 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.sectionOrOff("guard", off);
   GuardParams& guard = loop.guard;
   guard.enabled = !off;
-  section.interval("trust", guard.trust_low, guard.trust_high, {0.0, 1.0});
+  section.interval("trust", guard.trust_low, guard.trust_high, {0.0, 1.0}, "[low, high]");
   section.integer("look_ahead", guard.look_ahead, 0);
   section.integer("horizon_least", guard.horizon_least, 0);
   section.integer("return_samples", guard.return_samples, 1);

@@ -72,7 +72,7 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
   params.enabled = !off;
   params.gain_sign = true;
-  params.bridge_samples = kBridged;
+  params.bridge_samples = off ? 0 : kBridged;
   params.fallback = actuator.fallback;
   params.range_falls = root.section("actuator").has("fallback");  // an initial input is none
   params.hold_samples = actuator.hold_samples;

@@ -79,7 +79,8 @@ void readFrame(YamlSection& item, EquipmentFrame& frame) {
   item.finish();
 }
 
-void readFrames(YamlSection& items, std::vector<EquipmentFrame>& frames) {
+void readFrames(YamlSection& section, std::vector<EquipmentFrame>& frames) {
+  YamlSection items = section.section("frames");
   for (const auto& name : items.keys()) {
     YamlSection item = items.section(name);
     auto known =
@@ -143,7 +144,7 @@ ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outpu
   if (item.has("output") && std::count(outputs.begin(), outputs.end(), window.output) == 0)
     item.fail("output", "one of " + join(outputs));
   double from_s = 0.0, to_s = 0.0;
-  if (!item.interval("between_s", from_s, to_s, kFiniteNotNegative))
+  if (!item.interval("between_s", from_s, to_s, kFiniteNotNegative, "[from, to]"))
     item.fail("between_s", "[from, to]");
   window.from_h = from_s / 3600.0;
   window.to_h = to_s / 3600.0;
@@ -199,10 +200,8 @@ void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   loop.tf.frames = names.plant.frames;
   if (loop.external_plant) loop.tf.frames = {{loop.plant_info.frame_id, "", 0.0, 0.0, 0.0}};
   loop.simulation.output_delay_s.assign(names.outputs.size(), 0.0);
-  bool outside = false;
-  YamlSection frames = section.sectionOrOff("frames", outside);
-  loop.tf.broadcast = !outside;
-  readFrames(frames, loop.tf.frames);
+  section.boolean("broadcast", loop.tf.broadcast);
+  readFrames(section, loop.tf.frames);
   for (const auto& frame : loop.tf.frames) positionOf(frame.name, loop.tf.frames, section);
   for (auto& item : section.list("sample_lines")) readLine(item, section, loop, names);
   section.finish();

@@ -38,7 +38,8 @@ SensorParams readSensor(YamlSection& section) {
   section.number("resolution", params.resolution, kFiniteNotNegative);
   section.boolean("average", params.average);
   section.number("lost", params.lost, {0.0, 1.0});
-  section.interval("stuck_h", params.stuck_from_h, params.stuck_to_h, kFiniteNotNegative);
+  section.interval("stuck_h", params.stuck_from_h, params.stuck_to_h, kFiniteNotNegative,
+                   "[from, to]");
   checked(section, [&] { params.validate(); });
   section.finish();
   return params;

@@ -54,7 +54,7 @@ struct TuningScenario {
   std::string loop;  ///< another loop file; empty: the one that is tuned
   Overrides set;
   bool has_seed{false};
-  std::uint64_t seed{};  ///< of the disturbance pattern, of noise wherever there is any, of `vary`
+  std::uint64_t seed{};  ///< of the run (key `seed`) and of `vary`
   std::vector<Variation> vary;
 };
 

@@ -24,7 +24,7 @@ void SensorParams::validate() const {
   require(std::isfinite(noise_std) && noise_std >= 0.0, "noise_std", "a finite number >= 0");
   require(std::isfinite(resolution) && resolution >= 0.0, "resolution", "a finite number >= 0");
   require(lost >= 0.0 && lost <= 1.0, "lost", "a number from 0 to 1");
-  require(lower < upper, "upper", "a number > lower");
+  require(lower < upper, "range", "[lower, upper] with lower < upper");
   require(stuck_from_h >= 0.0 && stuck_from_h <= stuck_to_h, "stuck_to_h",
           "a time >= stuck_from_h");
 }

@@ -20,7 +20,7 @@ namespace fpc {
 /// its loop, where its names are remapped.
 class EquipmentFrames {
  public:
-  /// Does nothing if the frames come from elsewhere (tf.frames false).
+  /// Does nothing if the frames come from elsewhere (tf.broadcast false).
   void broadcast(ros::NodeHandle node, const TfParams& params, std::int64_t time_ns);
 
  private:

@@ -215,7 +215,7 @@ std::map<std::string, std::string> structDefaults() {
           {"plant.integrator.max_steps", std::to_string(integrator.max_steps)},
           {"plant.integrator.method", wordOf(integrator.method)},
           {"disturbance.source", wordOf(loop.disturbance.source)},
-          {"seed", std::to_string(loop.disturbance.pattern.seed)},
+          {"seed", std::to_string(loop.simulation.noise_seed)},
           {"disturbance.csv.time_unit", csv.time_unit},
           {"disturbance.csv.missing", csv.missing == MissingCells::kError ? "error" : "another"},
           {"disturbance.csv.interpolation", wordOf(csv.interpolation)},
@@ -242,8 +242,6 @@ std::map<std::string, std::string> structDefaults() {
           {"guard.growing_swings", std::to_string(loop.guard.growing_swings)},
           {"controller.loops[].anti_windup", wordOf(pi.anti_windup)},
           {"controller.loops[].start", wordOf(pi.start)},
-          {"seed", std::to_string(ExcitationParams{}.seed)},
-          {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
           {"model.max_pole", exactText(loop.max_pole)},
           {"model.identify.after", std::to_string(loop.identify.after)},
           {"model.identify.online.every", std::to_string(loop.identify.online.every)},
@@ -252,11 +250,12 @@ std::map<std::string, std::string> structDefaults() {
           {"clp.cost", wordOf(clp.cost)},
           {"clp.bounds", wordOf(clp.bounds)},
           {"clp.output_penalty", exactText(clp.output_penalty)},
+          {"clp.qp.max_iterations", std::to_string(clp.qp.max_iterations)},
           {"actuator.hold_samples", std::to_string(loop.simulation.actuator.hold_samples)},
-          {"seed", std::to_string(loop.simulation.noise_seed)},
           {"loop.speedup", exactText(loop.ring.speedup)},
           {"loop.ready_timeout_s", exactText(loop.ring.ready_timeout_s)},
-          {"loop.publish_clock", word(loop.ring.publish_clock)}};
+          {"loop.publish_clock", word(loop.ring.publish_clock)},
+          {"tf.broadcast", word(loop.tf.broadcast)}};
 }
 
 double asNumber(const std::string& text) { return YAML::Load(text).as<double>(std::nan("")); }

@@ -94,9 +94,7 @@ std::string excitation(Dice& dice, RandomFrame& frame) {
   for (const auto& u : frame.plant.inputs) {
     const auto kind = dice.pick<std::string>({"prbs", "multi_level", "steps", "none"});
     text += "    - {input: " + u.name + ", signal: " + kind;
-    if (kind == "prbs")
-      text += ", register_bits: " + std::to_string(dice.whole(2, 10)) +
-              ", clock_s: " + exactText(dice.whole(1, 5) * frame.sample_time_s);
+    if (kind == "prbs") text += ", clock_s: " + exactText(dice.whole(1, 5) * frame.sample_time_s);
     if (kind == "multi_level") {
       const int shortest = dice.whole(1, 6);
       text += ", hold_s: [" + exactText(shortest * frame.sample_time_s) + ", " +

@@ -51,9 +51,8 @@ TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
   expectWords(errorWith("signal: prbs, clock_s: 700"),
               {"loop.yaml:10: controller.signals[0].clock_s", "whole number of samples of 720 s"});
   expectWords(errorWith("signal: prbs, clock_s: 0"), {"signals[0].clock_s", "at least 1"});
-  expectWords(errorWith("signal: prbs, register_bits: 40"), {"signals[0].register_bits"});
   expectWords(errorWith("signal: prbs, range: [0, 1e6]"), {"signals[0].range"});
-  expectWords(errorWith("signal: prbs, range: [20, 10]"), {"range", "lower <= upper"});
+  expectWords(errorWith("signal: prbs, range: [20, 10]"), {"range", "[lower, upper]"});
   expectWords(errorWith("signal: prbs, hold_s: [720, 2160]"), {"hold_s: unknown key"});
   expectWords(errorWith("signal: none}\n  feedback:\n    - {input: q_r, output: y, gain: 1"),
               {"feedback[0].output"});
@@ -62,7 +61,8 @@ TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
   expectWords(errorWith("signal: sine"), {"signals[0].signal", "prbs, multi_level, steps, none"});
   expectWords(errorWith("signal: multi_level"), {"signals[0].hold_s"});
   expectWords(errorWith("signal: multi_level, hold_s: [720, 0]"), {"signals[0].hold_s"});
-  expectWords(errorWith("signal: multi_level, hold_s: [3600, 2880]"), {"hold_s", "lower <= upper"});
+  expectWords(errorWith("signal: multi_level, hold_s: [3600, 2880]"),
+              {"hold_s", "[shortest, longest]"});
   expectWords(errorWith(holds + "levels: [1, -1]"), {"levels", "limits"});
   expectWords(errorWith(holds + "levels: [1], range: [0, 1]"), {"either levels"});
   expectWords(errorWith("signal: steps"), {"signals[0].schedule", "a list"});

@@ -46,7 +46,6 @@ TEST(HybridLoop, MistakesAreNamed) {
   expectWords(error("controller.inputs.0.kM", "2"), {"inputs", "bounds"});
   expectWords(error("controller.cost.switching.0.before", "kX"), {"one of kM, kC, kH"});
   expectWords(error("controller.cost.tracking", "{T: -1}"), {"controller.cost.tracking.T"});
-  expectWords(error("controller.node_budget", "20"), {"budget", "28"});
   expectWords(error("actuator.fallback", "{kM: 0.5}"), {"fallback", "controller.inputs"});
   expectWords(error("report.windows", "[{name: w, between_s: [2, 1]}]"),
               {"report.windows[0].between_s"});

@@ -67,10 +67,12 @@ class YamlSection {
   void subset(const std::string& key, std::vector<std::string>& value,
               const std::vector<std::string>& known);
   void numbers(const std::string& key, std::vector<double>& value, Range range = {});
-  /// [lower, upper], lower <= upper; without the key both stay, and it returns false.
-  bool interval(const std::string& key, double& lower, double& upper, Range range = {});
-  /// A list of [x, y]; none: empty.
-  std::vector<std::pair<double, double>> pairs(const std::string& key);
+  /// Two numbers that do not decrease; without the key both stay, and it returns false. `what` they
+  /// are stands in the error.
+  bool interval(const std::string& key, double& lower, double& upper, Range range = {},
+                const std::string& what = "[lower, upper]");
+  /// A list of [x, y], none: empty; `what` they are stands in the error.
+  std::vector<std::pair<double, double>> pairs(const std::string& key, const std::string& what);
   /// n numbers; also accepts one number for all n. `.inf` and `-.inf` pass when the range allows
   /// them.
   void vector(const std::string& key, Vector& value, Eigen::Index n, Range range = {});

@@ -293,23 +293,22 @@ function renderBanner() {
   const top = S.alarms.find((a) => a.state === "unacknowledged") || S.alarms.find((a) => a.state === "returned");
   $("banner").className = gone ? "p1" : top ? "p" + top.priority : "";
   const lost = S.loops.filter((l) => l.stale);
-  const parts = [];
-  if (gone)
-    parts.push(h("span.lost", null, `NO CONNECTION to the panel for ${Math.floor(away / 1000)} s. What is shown is old.`));
-  else {
-    if (!S.master) parts.push(h("span.lost", null, "The ROS master does not answer: new loops are not found, commands may not arrive."));
-    if (S.trouble) parts.push(h("span.lost", null, S.trouble));
-    for (const l of lost.slice(0, 2))
-      parts.push(h("span.lost", null,
-        `${l.name}: NO WORD from the plant for ${Math.floor(l.stale)} s. Its values are old.`));
+  const parts = [], troubles = gone
+    ? [`NO CONNECTION to the panel for ${Math.floor(away / 1000)} s. What is shown is old.`]
+    : [
+      S.master ? "" : "The ROS master does not answer: commands may not arrive, new loops are not found.",
+      S.trouble,
+      ...lost.map((l) => `${l.name}: NO WORD from the plant for ${Math.floor(l.stale)} s. Its values are old.`)].filter(Boolean);
+  if (troubles.length) parts.push(h("span.lost", { title: troubles.join("\n") }, troubles.join(" ")));
+  if (!gone) {
     if (top)
       parts.push(
         alarmMark(top),
         h("a", { href: loopPath(top.loop) }, top.loop),
-        h("span", null,
+        h("span", { title: top.text },
           h("b", null, top.code),
           (top.signal ? " " + top.signal : "") + ": " + top.text + (top.state === "returned" ? " (gone again)" : "")),
-        remedy(top.code) ? h("span.soft", null, "Do: " + remedy(top.code)) : null,
+        remedy(top.code) ? h("span.soft.do", { title: remedy(top.code) }, "Do: " + remedy(top.code)) : null,
         h("button.pad",
           {
             disabled: !may("operate"), title: may("operate") ? "" : "log in as operator",
@@ -317,10 +316,12 @@ function renderBanner() {
           },
           "Acknowledge"));
   }
-  if (!parts.length) parts.push(h("span.soft", null, "No alarm."));
+  if (!parts.length && S.heard)
+    parts.push(h("span.soft", null, S.alarms.length ? `Nothing to acknowledge, ${S.alarms.length} not normal.` : "No alarm."));
   put($("banner"), parts);
   put($("link"), [gone ? "✕ no connection" : S.heard ? "● connected " + wall(S.time || Date.now() / 1000) : "connecting …"]);
 }
+$("banner").hidden = Boolean(FILE);
 if (!FILE)
   setInterval(() => {
     renderBanner();
@@ -527,12 +528,12 @@ function loopView(force) {
   $("live").classList.toggle("away", Boolean((brief || l).stale));
   put($("head"), [
     h("div.row", null,
-      h("h1", null, l.title),
-      h("span.word." + l.word, null, l.word),
-      h("span.soft.why", { title: l.reason }, l.reason),
+      h("h1", { title: l.title }, l.title),
       h("span.end.num", null,
         l.step >= 0 ? `sample ${l.step} · ${runTime(l.seconds)} · ${wall(S.time || Date.now() / 1000)}` : "")),
-    h("div.row", { style: null }, modeButtons(l))]);
+    h("div.row", null,
+      modeButtons(l),
+      h("span.state", null, h("span.word." + l.word, null, l.word), h("span.soft", { title: l.reason }, l.reason)))]);
   put($("tabs"), [
     h("div.row", { role: "group", "aria-label": "Views of this loop" },
       [["operate", "Operate"], ["model", "Model and settings"]].map(([key, label]) => h("button",
@@ -589,10 +590,10 @@ function loopView(force) {
           cell("mode",
             u.target === u.actual || u.target === "auto"
               ? `${u.target} · ${u.actual}`
-              : `asked ${u.target}, is ${u.actual}`),
+              : `asked ${u.target}, is ${u.actual}`, ".ask"),
           statusCell(u),
           reasonCell(u)))),
-      h("p.still", null, m.why ? [h("b", null, "The law is turned aside: "), m.why, "."] : null)]);
+      h("p.still", { title: m.why || null }, m.why ? [h("b", null, "The law is turned aside: "), m.why, "."] : null)]);
     put($("disturbances"), [
       m.disturbances.length
         ? table(["", "#value", "quality", "range", "status", "reason", ""],

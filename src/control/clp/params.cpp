@@ -29,7 +29,8 @@ void requireLimits(const Vector& lower, const Vector& upper, Eigen::Index size,
           "numbers not below " + key + "_lower");
 }
 
-void requireTargets(const std::vector<int>& outputs, Eigen::Index n_y, Eigen::Index n_u) {
+void requireTargets(const std::vector<int>& outputs, Eigen::Index n_y, Eigen::Index n_u,
+                    const std::string& key) {
   const bool distinct = [sorted = outputs]() mutable {
     std::sort(sorted.begin(), sorted.end());
     return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
@@ -37,7 +38,7 @@ void requireTargets(const std::vector<int>& outputs, Eigen::Index n_y, Eigen::In
   const bool inside = std::all_of(outputs.begin(), outputs.end(),
                                   [n_y](int o) { return o >= 0 && o < static_cast<int>(n_y); });
   const bool enough = outputs.empty() || static_cast<Eigen::Index>(outputs.size()) == n_u;
-  require(distinct && inside && enough, "clp.cost",
+  require(distinct && inside && enough, key,
           "least_perturbation and absolute bounds where the law steers " +
               std::to_string(outputs.size()) + " outputs by " + std::to_string(n_u) + " inputs");
 }
@@ -67,9 +68,10 @@ void ClpParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
     require(increment_lower.size() == n_u, "clp.increment_lower", "as many numbers as inputs");
     require(increment_upper.size() == n_u, "clp.increment_upper", "as many numbers as inputs");
   }
-  requireTargets(target_outputs, n_y, n_u);
+  const std::string key = cost == ClpCostKind::kLq ? "clp.cost" : "clp.bounds";
+  requireTargets(target_outputs, n_y, n_u, key);
   if (needsTarget(*this) && n_y != n_u) {
-    require(!target_outputs.empty(), "clp.cost",
+    require(!target_outputs.empty(), key,
             "as many outputs as there are inputs, for lq and for incremental bounds");
   }
   qp.validate();

@@ -1,7 +1,6 @@
 #include "control/excitation/excitation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -16,34 +15,8 @@ namespace {
 constexpr std::uint64_t kExcitation = 0x65786369;  // apart from the streams of disturbances
 constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
 
-// Exponents of primitive polynomials over {0, 1}, one for each number of bits from 2 on; the
-// constant term 1 is not listed.
-constexpr std::array<std::array<int, 4>, 19> kTaps = {{{2, 1},
-                                                       {3, 2},
-                                                       {4, 3},
-                                                       {5, 3},
-                                                       {6, 5},
-                                                       {7, 6},
-                                                       {8, 6, 5, 4},
-                                                       {9, 5},
-                                                       {10, 7},
-                                                       {11, 9},
-                                                       {12, 6, 4, 1},
-                                                       {13, 4, 3, 1},
-                                                       {14, 5, 3, 1},
-                                                       {15, 14},
-                                                       {16, 15, 13, 4},
-                                                       {17, 14},
-                                                       {18, 11},
-                                                       {19, 6, 2, 1},
-                                                       {20, 17}}};
-
-std::uint32_t tapsOf(int bits) {
-  std::uint32_t taps = 0;
-  for (const int exponent : kTaps[static_cast<std::size_t>(bits - ShiftRegister::kFewestBits)])
-    if (exponent > 0) taps |= 1U << static_cast<unsigned>(bits - exponent);
-  return taps;
-}
+// x^10 + x^7 + 1 is primitive over {0, 1}: the register falls through all words but zero.
+constexpr std::uint32_t kTaps = 1U | (1U << 3U);
 
 bool oddNumberOfOnes(std::uint32_t word) {
   bool odd = false;
@@ -76,9 +49,6 @@ void validateSignal(const ExcitationSignal& s, const std::string& key, const Inp
   require(s.hold_lower_steps >= 1, key + "hold_lower_steps", "a number of samples >= 1");
   require(s.hold_upper_steps >= s.hold_lower_steps, key + "hold_s",
           "[shortest, longest] time of a level");
-  require(
-      s.register_bits >= ShiftRegister::kFewestBits && s.register_bits <= ShiftRegister::kMostBits,
-      key + "register_bits", "2..20");
   require(s.signal != ExcitationKind::kSteps || !s.schedule.empty(), key + "schedule",
           "at least one entry");
   std::int64_t before = -1;
@@ -110,17 +80,14 @@ void ExcitationParams::validate(const InputLimits& limits, Eigen::Index n_y) con
   }
 }
 
-ShiftRegister::ShiftRegister(int bits, std::uint64_t state) : bits_(bits) {
-  require(bits >= kFewestBits && bits <= kMostBits, "register_bits", "2..20");
-  taps_ = tapsOf(bits);
-  mask_ = (1U << static_cast<unsigned>(bits)) - 1U;
-  state_ = static_cast<std::uint32_t>((state + mask_ - 1U) % mask_) + 1U;  // never all zeros
-}
+ShiftRegister::ShiftRegister(std::uint64_t state)
+    : state_(static_cast<std::uint32_t>((state + kPeriod - 1U) % kPeriod) + 1U) {
+}  // never all zeros
 
 bool ShiftRegister::next() {
   const bool out = (state_ & 1U) != 0;
-  const std::uint32_t in = oddNumberOfOnes(state_ & taps_) ? 1U : 0U;
-  state_ = (state_ >> 1U) | (in << static_cast<unsigned>(bits_ - 1));
+  const std::uint32_t in = oddNumberOfOnes(state_ & kTaps) ? 1U : 0U;
+  state_ = (state_ >> 1U) | (in << (kBits - 1U));
   return out;
 }
 
@@ -129,7 +96,7 @@ ExcitationStream::ExcitationStream(ExcitationSignal signal, std::uint64_t seed, 
       start_input_(start_input),
       first_engine_(seededEngine(seed, {static_cast<std::uint64_t>(signal_.input), kExcitation})),
       engine_(first_engine_),
-      first_register_(signal_.register_bits, engine_() >> 32U),
+      first_register_(engine_() >> 32U),
       register_(first_register_) {
   rewind();
 }

@@ -31,7 +31,6 @@ struct ExcitationSignal {
   ExcitationKind signal{ExcitationKind::kNone};
   double lower{}, upper{};     ///< prbs: both levels; multi_level: levels are uniform between them
   std::vector<double> levels;  ///< multi_level: drawn from this list instead
-  int register_bits{10};       ///< prbs: repeats after 2^bits - 1 clocks; 2..20
   int clock_steps{1};          ///< prbs: samples per bit
   int hold_lower_steps{1};     ///< multi_level: a level is held for a time that is uniform in
   int hold_upper_steps{1};     ///< hold_lower_steps..hold_upper_steps
@@ -56,16 +55,13 @@ struct ExcitationParams {
 /// Two levels: the bits of a shift register with feedback, period 2^bits - 1.
 class ShiftRegister {
  public:
-  static constexpr int kFewestBits = 2, kMostBits = 20;
-  /// @throws InputError unless bits is within its limits. `state` is any number; 1..2^bits - 1 are
-  /// taken as they are.
-  ShiftRegister(int bits, std::uint64_t state);
+  static constexpr std::uint32_t kBits = 10, kPeriod = (1U << kBits) - 1U;
+  /// `state` is any number; 1..kPeriod are taken as they are.
+  explicit ShiftRegister(std::uint64_t state);
   bool next();  ///< the bit that falls out
-  std::uint32_t period() const { return mask_; }
 
  private:
-  std::uint32_t taps_, mask_, state_;
-  int bits_;
+  std::uint32_t state_;
 };
 
 /// The signal of one input, a function of seed, input and sample only.

@@ -25,8 +25,6 @@ std::int64_t wholeSamples(const YamlSection& section, const std::string& key, do
 }
 
 void readRegister(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
-  item.integer("register_bits", signal.register_bits, ShiftRegister::kFewestBits,
-               ShiftRegister::kMostBits);
   double clock_s = sample_time_s;
   item.number("clock_s", clock_s, kFiniteNotNegative);
   signal.clock_steps = static_cast<int>(wholeSamples(item, "clock_s", clock_s, sample_time_s));
@@ -38,7 +36,7 @@ void readHolds(YamlSection& item, ExcitationSignal& signal, double sample_time_s
   if (item.has("levels") && item.has("range")) item.fail("levels", "either levels or a range");
   if (item.has("levels") && signal.levels.empty()) item.fail("levels", "at least one number");
   double shortest_s = 0.0, longest_s = 0.0;
-  if (!item.interval("hold_s", shortest_s, longest_s, kFiniteNotNegative))
+  if (!item.interval("hold_s", shortest_s, longest_s, kFiniteNotNegative, "[shortest, longest]"))
     item.fail("hold_s", "[shortest, longest] time of a level");
   const auto samples = [&](double time_s) {
     const std::int64_t whole = wholeSamples(item, "hold_s", time_s, sample_time_s);

@@ -49,7 +49,7 @@ struct HybridMpcParams {
   std::vector<SwitchTerm> switching;
   std::vector<TravelTerm> travel;
   BranchBound bound{BranchBound::kReach};
-  std::uint64_t node_budget{};  ///< 0: none
+  std::uint64_t node_budget{1000000};  ///< nodes of a search, then the best so far, with an event
   /// @throws InputError naming the field: sizes, repeated choices, negative costs, indices.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
   void validateLimits(const InputLimits& limits) const;  ///< @throws InputError: choices inside

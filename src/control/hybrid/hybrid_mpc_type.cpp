@@ -90,7 +90,6 @@ HybridMpcParams readHybridMpc(YamlSection& section, const ControllerContext& loo
   section.boolean("preview", params.preview);
   readCost(section, params, loop);
   readOption(section, "bound", params.bound);
-  section.seed("node_budget", params.node_budget);
   checked(section, [&] {
     params.validate(loop.outputCount(), loop.inputCount());
     params.validateLimits(loop.limits);

@@ -20,7 +20,7 @@ PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
   if (item.has("tracking_time_h") && pi.anti_windup != AntiWindup::kTracking)
     item.fail("tracking_time_h", "anti_windup: tracking beside it");
   readOption(item, "start", pi.start);
-  pi.gain_schedule = readCurve(item, "gain_schedule");
+  pi.gain_schedule = readCurve(item, "gain_schedule", "factor");
   readPiTerms(item, pi.terms, loop);
   item.finish();
   return pi;

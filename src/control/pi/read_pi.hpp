@@ -13,8 +13,9 @@ struct PiGains {
 };
 const SettingsTable<PiGains>& piSettings();
 
-/// Points [at, value] of a curve.
-std::vector<CurvePoint> readCurve(YamlSection& section, const std::string& key);
+/// Points [output, value] of a curve.
+std::vector<CurvePoint> readCurve(YamlSection& section, const std::string& key,
+                                  const std::string& value_name);
 /// Keys of one loop besides its gains.
 void readPiTerms(YamlSection& section, PiTerms& terms, const ControllerContext& loop);
 

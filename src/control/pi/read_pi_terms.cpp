@@ -22,9 +22,11 @@ std::vector<PiFeedforward> readFeedforward(YamlSection& loop, const ControllerCo
 
 }  // namespace
 
-std::vector<CurvePoint> readCurve(YamlSection& loop, const std::string& key) {
+std::vector<CurvePoint> readCurve(YamlSection& loop, const std::string& key,
+                                  const std::string& value_name) {
   std::vector<CurvePoint> curve;
-  for (const auto& [at, value] : loop.pairs(key)) curve.push_back({at, value});
+  for (const auto& [at, value] : loop.pairs(key, "a list [[output, " + value_name + "], ...]"))
+    curve.push_back({at, value});
   return curve;
 }
 
@@ -34,7 +36,7 @@ void readPiTerms(YamlSection& loop, PiTerms& terms, const ControllerContext& con
   loop.number("preview_h", terms.preview_h, kFiniteNotNegative);
   loop.number("setpoint_pole", terms.setpoint_pole, {0.0, 1.0});
   loop.number("setpoint_lead_h", terms.setpoint_lead_h, kFiniteNotNegative);
-  terms.static_input = readCurve(loop, "static_input");
+  terms.static_input = readCurve(loop, "static_input", "input");
   terms.feedforward = readFeedforward(loop, context);
 }
 

@@ -19,7 +19,6 @@ ExcitationSignal prbs(int input) {
   signal.signal = ExcitationKind::kPrbs;
   signal.lower = 200.0;
   signal.upper = 800.0;
-  signal.register_bits = 7;
   signal.clock_steps = 3;
   return signal;
 }
@@ -44,13 +43,13 @@ std::vector<double> played(const ExcitationSignal& signal, std::uint64_t seed,
 }
 
 TEST(ExcitationStream, PrbsHoldsEachBitForItsClockAndRepeatsAfterThePeriod) {
-  const auto u = played(prbs(0), 1, 3 * 127 * 2);
+  const auto u = played(prbs(0), 1, 3 * 1023 * 2);
   double high = 0;
   for (std::size_t k = 0; k < u.size(); ++k) {
     EXPECT_TRUE(u[k] == 200.0 || u[k] == 800.0);
     EXPECT_EQ(u[k], u[k - k % 3]);
-    EXPECT_EQ(u[k], u[(k + 3 * 127) % u.size()]);
-    if (k < 3 * 127) high += u[k] == 800.0 ? 1.0 : 0.0;
+    EXPECT_EQ(u[k], u[(k + 3 * 1023) % u.size()]);
+    if (k < 3 * 1023) high += u[k] == 800.0 ? 1.0 : 0.0;
   }
   EXPECT_EQ(high, 3.0 * 64.0);
 }
