@@ -27,7 +27,7 @@ def environment(port):
 
 
 def bare(samples, nodelets, place=()):
-    """Microseconds a sample of the bare ring."""
+    """Microseconds a sample of the bare exchange."""
     port = free_port()
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment(port)}
     master = subprocess.Popen([*place, "rosmaster", "--core", "-p", str(port)], **quiet)

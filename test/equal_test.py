@@ -14,7 +14,7 @@ import rosgraph
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "test" / "ros"))
-import ring  # noqa: E402
+import exchange  # noqa: E402
 
 EXAMPLE = TOP / "examples" / "two_tanks" / "config"
 HANDOVER = TOP / "examples" / "handover"
@@ -84,9 +84,9 @@ def environment():
 
 
 def launch(folder, loop, sets, pace, speedup, port=None):
-    port = port or ring.free_port()
+    port = port or exchange.free_port()
     done = subprocess.run(
-        ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
+        exchange.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
                    f"speedup:={speedup}", f"out:={folder}", "draw:=false"]),
         env={**environment(), "ROS_MASTER_URI": f"http://localhost:{port}"}, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, text=True, timeout=240, check=False)
@@ -94,7 +94,7 @@ def launch(folder, loop, sets, pace, speedup, port=None):
 
 
 def tool(*arguments):
-    done = subprocess.run([ring.program("fmbpc_tool"), *arguments], env=environment(), capture_output=True, text=True,
+    done = subprocess.run([exchange.program("fmbpc_tool"), *arguments], env=environment(), capture_output=True, text=True,
                           timeout=240, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -124,22 +124,22 @@ class Equal(unittest.TestCase):
             if pace == "realtime":
                 late = self.compare_realtime(topics, process, steps)
             else:
-                ring.assert_same_run(self, topics, process)
-            self.assertLessEqual(ring.summary(topics)["steps"], steps)
-            self.assertGreaterEqual(ring.summary(topics)["steps"], steps - late)  # none is missing but for a late one
-            return ring.summary(topics)
+                exchange.assert_same_run(self, topics, process)
+            self.assertLessEqual(exchange.summary(topics)["steps"], steps)
+            self.assertGreaterEqual(exchange.summary(topics)["steps"], steps - late)  # none is missing but for a late one
+            return exchange.summary(topics)
 
     def compare_realtime(self, topics, process, steps):
         """A machine may be too slow for a sample: the runs are the same up to the first action that came too late, where
         the input that was held is not the one that was commanded, or that went out without the optimizer."""
-        here, there = ring.trajectory(topics), ring.trajectory(process)
+        here, there = exchange.trajectory(topics), exchange.trajectory(process)
         applied, commanded = (here[0].split(",").index(name) for name in ("q_r[m3/h]", "q_r_commanded[m3/h]"))
         cells = [row.split(",") for row in here]
         late = [k for k in range(1, steps + 1) if cells[k][applied] != cells[k][commanded]]
-        alone = [e["first"] + 1 for e in ring.summary(topics)["events"] if e["code"] == "optimizer_lost"]
+        alone = [e["first"] + 1 for e in exchange.summary(topics)["events"] if e["code"] == "optimizer_lost"]
         same = min(late + alone, default=steps + 2)
         if same == steps + 2:
-            ring.assert_same_run(self, topics, process)
+            exchange.assert_same_run(self, topics, process)
         self.assertEqual(there[:same], here[:same])
         self.assertEqual(len(there), len(here))
         print(f"realtime: {same - 1} of {steps + 1} rows compared, {len(late)} actions too late, "
@@ -148,11 +148,11 @@ class Equal(unittest.TestCase):
 
     def test_a_listener_that_died_unsaid_costs_no_sample(self):
         """Every node waits for it before it is ready, and none while another waits for its answer."""
-        port = ring.free_port()
-        core = subprocess.Popen(ring.tied(["rosmaster", "--core", "-p", port]), stdout=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, core)
+        port = exchange.free_port()
+        core = subprocess.Popen(exchange.tied(["rosmaster", "--core", "-p", port]), stdout=subprocess.DEVNULL)
+        self.addCleanup(exchange.killed, core)
         master = rosgraph.Master("/died", f"http://localhost:{port}")
-        ring.wait_until(master.is_online, "the master")
+        exchange.wait_until(master.is_online, "the master")
         for topic in ("base_action", "control_action", "solver_report", "measurement", "predictive_action"):
             master.registerSubscriber("/" + topic, "*", "http://localhost:1")
         self.compare_case(*CASES["paced"], port=port)

@@ -17,7 +17,7 @@ import fmbpc
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "test" / "ros"))
-import ring  # noqa: E402
+import exchange  # noqa: E402
 
 LONG = os.environ.get("FMBPC_LONG_TESTS")
 SAMPLES = 480  # more where a loop identifies a model: until it has one
@@ -46,7 +46,7 @@ class EveryLoop(unittest.TestCase):
         identify = (yaml.safe_load(loop.resolved).get("model") or {}).get("identify") or {}
         samples = max(SAMPLES, identify.get("after", 0) + 40)
         sets = [f"sampling.duration_h={samples * loop.sample_time_s / 3600.0!r}", "report.record_from_h=0"]
-        port = ring.free_port()
+        port = exchange.free_port()
         topics = run(f"roslaunch -p {port} fmbpc loop.launch loop:={name} pace:=lockstep draw:=false "
                      f"set:='{' '.join(sets)}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")
         process = run(f"rosrun fmbpc fmbpc run {name} --set {' --set '.join(sets)} --no-plot --out {folder}/process")

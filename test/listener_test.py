@@ -7,12 +7,12 @@ import unittest
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent / "ros"))
 try:
-    import ring
+    import exchange
 except ImportError:
-    ring = None
+    exchange = None
 
 
-@unittest.skipIf(ring is None, "built without ROS")
+@unittest.skipIf(exchange is None, "built without ROS")
 class Listener(unittest.TestCase):
     def publishers(self, *answers):
         """Of a listener whose connections were answered by these nodes; None: not yet."""
@@ -23,7 +23,7 @@ class Listener(unittest.TestCase):
             if node is not None:
                 connection.callerid_pub = node
             connections.append(connection)
-        listener = ring.Listener.__new__(ring.Listener)
+        listener = exchange.Listener.__new__(exchange.Listener)
         listener.subscriber = types.SimpleNamespace(impl=types.SimpleNamespace(connections=connections))
         return listener.publishers()
 

@@ -12,26 +12,26 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(TOP / "test"), str(TOP / "test" / "ros")]
 import equal_test  # noqa: E402
-import ring  # noqa: E402
+import exchange  # noqa: E402
 
 QUICK, LONG = 4, 100
 
 
 def write_loops(folder):
     """In the order of the seeds: folder/random_SEED/loop.yaml, with its records beside it."""
-    subprocess.run([ring.program("test_random"), "--gtest_filter=RandomLoops.CanBeWrittenToAFolder"], check=True,
+    subprocess.run([exchange.program("test_random"), "--gtest_filter=RandomLoops.CanBeWrittenToAFolder"], check=True,
                    stdout=subprocess.DEVNULL, timeout=60, cwd=TOP / "test", env={**os.environ, "FMBPC_RANDOM_DIR": folder})
     return sorted(pathlib.Path(folder).glob("random_*/loop.yaml"), key=lambda loop: int(loop.parent.name.split("_")[1]))
 
 
 def in_process(loop, folder):
     """What the tool says: a run that fails (the plant could not be moved, every sample was held) is compared like others."""
-    return subprocess.run([ring.program("fmbpc_tool"), "run", str(loop), "--no-plot", "--out", str(folder)],
+    return subprocess.run([exchange.program("fmbpc_tool"), "run", str(loop), "--no-plot", "--out", str(folder)],
                           capture_output=True, text=True, timeout=240, check=False)
 
 
 def is_accepted(loop):
-    resolved = subprocess.run([ring.program("fmbpc_tool"), "resolve", str(loop)], capture_output=True, timeout=60, check=False)
+    resolved = subprocess.run([exchange.program("fmbpc_tool"), "resolve", str(loop)], capture_output=True, timeout=60, check=False)
     return resolved.returncode == 0
 
 
@@ -74,7 +74,7 @@ class RandomEqual(unittest.TestCase):
         text = equal_test.launch(topics, loop, [], "lockstep", 3600)
         self.assertTrue((topics / "summary.json").exists(), text[-3000:])
         try:
-            ring.assert_same_run(self, topics, process)
+            exchange.assert_same_run(self, topics, process)
         except AssertionError as difference:
             raise AssertionError(f"{difference}\n{loop.read_text(encoding='utf-8')}") from None
 

@@ -5,7 +5,7 @@
 #include <pybind11/stl.h>
 
 #include "fmbpc/base/event.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc::python {

@@ -1,7 +1,7 @@
 // Whether two headers are of one sample.
 #pragma once
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 
 namespace fpc {
 

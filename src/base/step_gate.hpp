@@ -1,10 +1,11 @@
-// Which arriving samples are new: every node of the ring asks the same question in the same way.
+// Which arriving samples are new: every node of the exchange asks the same question in the same
+// way.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 
 namespace fpc {
 

@@ -10,7 +10,7 @@
 namespace fpc {
 
 enum class GatewayType : std::uint8_t {
-  kNone,     ///< the plant's own node speaks the ring
+  kNone,     ///< the plant's own node speaks the exchange
   kFloat64,  ///< std_msgs/Float64 topics, one per signal
   kModbus,   ///< Modbus/TCP
 };

@@ -119,7 +119,7 @@ LoopFile readKnownSections(YamlSection& root, const std::string& name) {
   readPlausibility(root, loop);
   readModelSection(root, loop);
   readCandidate(root, loop);
-  readRing(root, loop);
+  readExchange(root, loop);
   readReport(root, loop, names);
   root.finish();
   return loop;

@@ -26,8 +26,8 @@ namespace fpc {
 enum class Pace { kLockstep, kPaced, kRealtime };
 inline std::vector<std::string> wordsOf(Pace) { return {"lockstep", "paced", "realtime"}; }
 
-/// Section `loop`: how the ring over topics runs; ignored in one process.
-struct RingParams {
+/// Section `loop`: how the exchange over topics runs; ignored in one process.
+struct ExchangeParams {
   Pace pace{Pace::kLockstep};
   double speedup{3600.0};  ///< simulated seconds per second of wall time (paced, realtime)
   std::vector<std::string>
@@ -114,7 +114,7 @@ struct CandidateFile {
 struct LoopFile {
   std::string name;  ///< the file's stem
   std::string file;
-  bool external_plant{false};   ///< plant.type external: a node of the user's speaks the ring
+  bool external_plant{false};   ///< plant.type external: a node of the user's speaks the exchange
   PlantInfo plant_info;         ///< header of sample 0 with run_id 0
   SimulationParams simulation;  ///< without the disturbance record; for an external plant only
                                 ///< sampling, limits, names
@@ -140,7 +140,7 @@ struct LoopFile {
   bool has_clp{false};
   ClpParams clp;
   TargetParams targets;
-  RingParams ring;
+  ExchangeParams exchange;
   TfParams tf;
   ReportParams report;
   std::string

@@ -47,7 +47,7 @@ void readModelSection(YamlSection& root, LoopFile& loop);
 TsModel withInstruments(TsModel model, const SimulationParams& plant);
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readCandidate(YamlSection& root, LoopFile& loop);
-void readRing(YamlSection& root, LoopFile& loop);
+void readExchange(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 
 /// A value that the plant can never take is a mistake of unit or digits; NaN is none. `what`: a

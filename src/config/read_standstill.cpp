@@ -27,7 +27,8 @@ void readWatched(YamlSection& section, const std::vector<std::string>& names, bo
   }
 }
 
-/// Variance of the noise of what the ring sees of an instrument: less in a mean over the sample.
+/// Variance of the noise of what the exchange sees of an instrument: less in a mean over the
+/// sample.
 double varianceOf(const LoopFile& loop, const std::string& name) {
   const InstrumentParams& instruments = loop.simulation.instruments;
   const auto found = instruments.sensors.find(name);

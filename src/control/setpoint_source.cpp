@@ -10,7 +10,8 @@
 namespace fpc {
 namespace {
 
-// Finite stand-in for "no clamp", so that the sum of two huge wishes is not passed on as infinite.
+// Finite stand-in for "no clamp", so that the sum of two huge operator_state is not passed on as
+// infinite.
 constexpr double kHuge = std::numeric_limits<double>::max();
 
 Vector filled(const Vector& given, Eigen::Index n_y, double absent) {

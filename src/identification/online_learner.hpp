@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/step_gate.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "identification/online_consequents.hpp"
 
 namespace fpc {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/step_gate.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "identification/structure.hpp"
 
 namespace fpc {

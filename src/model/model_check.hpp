@@ -1,7 +1,7 @@
 // May this model take over in a running loop?
 #pragma once
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/model/ts_model.hpp"
 
 namespace fpc {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

@@ -15,7 +15,7 @@ namespace fpc {
 
 struct InstrumentParams {
   std::map<std::string, SensorParams> sensors;  ///< by measured output or disturbance
-  double step_s{60.0};  ///< instruments are moved so often between samples of the ring
+  double step_s{60.0};  ///< instruments are moved so often between samples of the exchange
   std::uint64_t seed{1};
 };
 

@@ -1,12 +1,12 @@
-// What stands behind the plant's end of the ring: a simulation, or a gateway to a plant that is not
-// ours.
+// What stands behind the plant's end of the exchange: a simulation, or a gateway to a plant that is
+// not ours.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <utility>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "plant/actuator.hpp"
 #include "plant/simulation.hpp"
 

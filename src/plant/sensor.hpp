@@ -25,8 +25,8 @@ struct SensorParams {
   double resolution{0.0};  ///< shows multiples of it only; 0: every number
   double lower{-std::numeric_limits<double>::infinity()};
   double upper{std::numeric_limits<double>::infinity()};
-  double lost{0.0};     ///< probability that a sample of the ring has no reading
-  bool average{false};  ///< the ring sees the mean of what it showed since the last sample
+  double lost{0.0};     ///< probability that a sample of the exchange has no reading
+  bool average{false};  ///< the exchange sees the mean of what it showed since the last sample
   double stuck_from_h{std::numeric_limits<double>::infinity()};  ///< shows its last value ...
   double stuck_to_h{std::numeric_limits<double>::infinity()};    ///< ... until then
   void validate() const;  ///< @throws InputError naming the field
@@ -45,7 +45,7 @@ class Sensor {
   void reset(double value);
   /// The quantity goes in a straight line from `from` to `to` in `seconds`.
   void advance(double from, double to, double seconds);
-  /// What the ring sees now: noise and range included. Ends the averaging interval.
+  /// What the exchange sees now: noise and range included. Ends the averaging interval.
   double take();
   bool loses();  ///< whether the reading of this sample is lost; call once a sample
 

@@ -10,7 +10,7 @@
 
 #include "fmbpc/base/command_table.hpp"
 #include "fmbpc/base/event.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/plant/plant.hpp"
 #include "plant/actuator.hpp"

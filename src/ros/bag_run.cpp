@@ -89,8 +89,9 @@ class Reader {
 
   /// What stood before the run began, unless it says something else itself.
   void bringAlong() {
-    if (wishes_before_)
-      run_.wishes.emplace_hint(run_.wishes.begin(), 0, std::move(wishes_before_->second));
+    if (operator_before_)
+      run_.operator_state.emplace_hint(run_.operator_state.begin(), 0,
+                                       std::move(operator_before_->second));
     if (model_before_)
       run_.models.emplace_hint(run_.models.begin(), 0, std::move(model_before_->second));
   }
@@ -125,13 +126,13 @@ class Reader {
 
   /// What was asked after sample k acts from k + 1 on; what was asked before the first, from it on.
   void take(const fmbpc::OperatorState& msg) {
-    if (ofBefore(msg.run_id, wishes_before_, wishesOf(msg))) return;
+    if (ofBefore(msg.run_id, operator_before_, operatorStateOf(msg))) return;
     const std::int64_t t = fromStamp(msg.header.stamp);
     const auto answered = std::find_if(run_.measurements.begin(), run_.measurements.end(),
                                        [t](const auto& m) { return m.second.header.time_ns >= t; });
-    const bool first = run_.wishes.empty();
+    const bool first = run_.operator_state.empty();
     const std::uint32_t step = answered == run_.measurements.end() ? newest_ : answered->first + 1;
-    run_.wishes.emplace(first ? 0 : step, wishesOf(msg));
+    run_.operator_state.emplace(first ? 0 : step, operatorStateOf(msg));
   }
 
   /// In lockstep from the sample after the one it was made from, else when it came: before sample 0
@@ -142,7 +143,7 @@ class Reader {
     const bool at_start =
         run_.measurements.empty() || came_ns <= run_.measurements.begin()->second.header.time_ns;
     const std::uint32_t made = msg.run_id == 0 ? 0 : msg.step + 1;
-    const bool exact = msg.run_id != 0 && loop_.ring.pace == Pace::kLockstep;
+    const bool exact = msg.run_id != 0 && loop_.exchange.pace == Pace::kLockstep;
     run_.models.emplace(exact || at_start ? made : std::max(made, newest_), model);
   }
 
@@ -150,7 +151,7 @@ class Reader {
   std::string file_;
   RecordedRun run_;
   std::uint64_t chosen_{};
-  std::optional<std::pair<std::uint64_t, OperatorWishes>> wishes_before_;  // with their run
+  std::optional<std::pair<std::uint64_t, OperatorState>> operator_before_;  // with their run
   std::optional<std::pair<std::uint64_t, TsModel>> model_before_;
   std::uint32_t newest_{};  // the step after the newest measurement so far
 };

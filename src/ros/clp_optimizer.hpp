@@ -13,13 +13,13 @@
 #include <string>
 
 #include "config/loop_file.hpp"
+#include "ros/exchange_publisher.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/hearers.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
-#include "ros/ring_publisher.hpp"
 #include "ros/signal_publishers.hpp"
 #include "ros/summary_listener.hpp"
 #include "ros/wall_throttle.hpp"
@@ -54,8 +54,8 @@ class ClpOptimizer : public Node {
   WallThrottle log_{1.0};
 
   Comeback comeback_;
-  RingPublisher<fmbpc::ControlAction> action_;
-  RingPublisher<fmbpc::SolverReport> report_;
+  ExchangePublisher<fmbpc::ControlAction> action_;
+  ExchangePublisher<fmbpc::SolverReport> report_;
   ros::Publisher plan_;
   Hearers plan_hearers_;
   ListenerGate listeners_;

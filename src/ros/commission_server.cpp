@@ -46,16 +46,16 @@ CommissionServer::~CommissionServer() {
 }
 
 double CommissionServer::patience() const {
-  if (loop_.ring.pace == Pace::kLockstep) return std::numeric_limits<double>::infinity();
-  if (loop_.ring.pace == Pace::kPaced) return kPacedPatience;
-  const double speedup = loop_.external_plant ? loop_.gateway.speedup : loop_.ring.speedup;
+  if (loop_.exchange.pace == Pace::kLockstep) return std::numeric_limits<double>::infinity();
+  if (loop_.exchange.pace == Pace::kPaced) return kPacedPatience;
+  const double speedup = loop_.external_plant ? loop_.gateway.speedup : loop_.exchange.speedup;
   return kPatienceShare * loop_.plant_info.sample_time_s / speedup;
 }
 
 void CommissionServer::onGoal(Server::GoalHandle goal) {
   try {
     require(!thread_.joinable(), topics::kCommission, "no other goal that is at work");
-    require(loop_.ring.publishers.at(topics::kServices).empty(), "loop.publishers.services",
+    require(loop_.exchange.publishers.at(topics::kServices).empty(), "loop.publishers.services",
             "nobody named: an action does not say who asks");
     begin(*goal.getGoal());
   } catch (const std::exception& error) {

@@ -14,7 +14,7 @@ std::string after(const char* words, const std::string& text) {
 }  // namespace
 
 std::string ControllerNode::plantName() const {
-  const auto& names = loop_.ring.publishers.at(topics::kMeasurement);
+  const auto& names = loop_.exchange.publishers.at(topics::kMeasurement);
   return names.empty() ? "the plant" : names.front();
 }
 
@@ -47,9 +47,9 @@ Health ControllerNode::health(double now_s) const {
             EventCode::kOptimizerLost,
             "no answer of " + standin_->optimizer() + " to sample " + step,
             {standin_->optimizer()}};
-  const double period_s = loop_.ring.pace == Pace::kLockstep
+  const double period_s = loop_.exchange.pace == Pace::kLockstep
                               ? 0.0
-                              : loop_.plant_info.sample_time_s / loop_.ring.speedup;
+                              : loop_.plant_info.sample_time_s / loop_.exchange.speedup;
   if (const auto rest = summary_.rest()) return *rest;
   if (now_s - heard_s_ > period_s + kSilence)
     return {LoopMode::kStalled,

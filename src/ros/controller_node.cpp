@@ -29,7 +29,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(makeControllerSession(loop)),
-      inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
+      inbox_(loop.has_identify && loop.exchange.pace == Pace::kLockstep),
       desk_(node, loop, name(), session_, [this] { answerParked(); }),
       ready_(node, loop, name(),
              [this] {
@@ -44,11 +44,11 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       effect_(node, topics::kSetpointEffect, comeback_, audienceOf(node, authority())),
       listeners_(
           {base_.publisher(), prediction_.publisher(), tracking_.publisher(), effect_.publisher()}),
-      links_(node, private_node, loop.ring.pace, LinkInbox::Of::kController,
+      links_(node, private_node, loop.exchange.pace, LinkInbox::Of::kController,
              [this] { guarded(topics::kControlAction, [this] { answerParked(); }); }),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
-      measurement_subscriber_(subscribeLaw(node, topics::kMeasurement, loop.ring.pace,
+      measurement_subscriber_(subscribeLaw(node, topics::kMeasurement, loop.exchange.pace,
                                            &ControllerNode::onMeasurement, this)),
       identified_subscriber_(subscribe(node, topics::kIdentified, queueOf(ListenerKind::kPeer),
                                        &ControllerNode::onIdentified, this)),
@@ -73,7 +73,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
           [this](const std::string& why) { refuse(topics::kSettings, why); },
           [this](const std::string& caller) { return mayPass(topics::kServices, caller); }),
       summary_(node, loop, name()),
-      commands_(loop.ring.commands_per_s, kBurst),
+      commands_(loop.exchange.commands_per_s, kBurst),
       health_(node, private_node, "controller", loop.name, false,
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.answer().tracking.header; },
@@ -143,11 +143,12 @@ void ControllerNode::onTargets(const fmbpc::Targets::ConstPtr& msg) {
 // away, and says so.
 bool ControllerNode::hasTargets(const StepHeader& sample) {
   if (!loop_.targets.enabled || isSameSample(sample, aimed_)) return true;
-  if (loop_.ring.pace == Pace::kLockstep || !parked_ || !isSameSample(parked_->header, sample))
+  if (loop_.exchange.pace == Pace::kLockstep || !parked_ || !isSameSample(parked_->header, sample))
     return false;
-  double patience_s = loop_.ring.optimizer_timeout_s;
-  if (loop_.ring.pace == Pace::kRealtime)
-    patience_s = std::min(patience_s, 0.25 * loop_.plant_info.sample_time_s / loop_.ring.speedup);
+  double patience_s = loop_.exchange.optimizer_timeout_s;
+  if (loop_.exchange.pace == Pace::kRealtime)
+    patience_s =
+        std::min(patience_s, 0.25 * loop_.plant_info.sample_time_s / loop_.exchange.speedup);
   if (steadyNow() - parked_since_s_ < patience_s) return false;
   target_events_.assign(1, eventOf({EventCode::kTargetsLate}, sample.step));
   return true;

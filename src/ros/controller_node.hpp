@@ -23,6 +23,7 @@
 
 #include "config/loop_file.hpp"
 #include "ros/commission_server.hpp"
+#include "ros/exchange_publisher.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/link_listener.hpp"
 #include "ros/listener_gate.hpp"
@@ -31,7 +32,6 @@
 #include "ros/optimizer_standin.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
-#include "ros/ring_publisher.hpp"
 #include "ros/settings_server.hpp"
 #include "ros/signal_publishers.hpp"
 #include "ros/summary_listener.hpp"
@@ -110,10 +110,10 @@ class ControllerNode : public Node {
   std::vector<Event> models_refused_;  // that could not be used; until they are in an answer
   std::vector<Event> events_;          // of the present answer, and what came with it
 
-  RingPublisher<fmbpc::ControlAction> base_;
-  RingPublisher<fmbpc::PredictiveAction> prediction_;
-  RingPublisher<fmbpc::Tracking> tracking_;
-  RingPublisher<fmbpc::CommandEffect> effect_;
+  ExchangePublisher<fmbpc::ControlAction> base_;
+  ExchangePublisher<fmbpc::PredictiveAction> prediction_;
+  ExchangePublisher<fmbpc::Tracking> tracking_;
+  ExchangePublisher<fmbpc::CommandEffect> effect_;
   ListenerGate listeners_;
   LinkListener links_;  // of setpoints
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "fmbpc/base/command_table.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/model/ts_model.hpp"
 #include "runtime/model_inbox.hpp"
 

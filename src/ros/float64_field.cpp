@@ -96,7 +96,7 @@ std::string Float64Field::problem() const {
   return "";
 }
 
-/// What others ask in the way of the pid package becomes a setpoint of the ring.
+/// What others ask in the way of the pid package becomes a setpoint of the exchange.
 void Float64Field::forwardSetpoint(ros::NodeHandle& node, const std::string& topic,
                                    const std::string& output) {
   if (topic.empty()) return;

@@ -54,7 +54,7 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
       ready_(node, loop, name(), [this] { return isReady(); }),
       plant_(loop),
       session_(loop),
-      duty_(loop.ring.pace == Pace::kLockstep),
+      duty_(loop.exchange.pace == Pace::kLockstep),
       model_publisher_(node.advertise<fmbpc::FuzzyModel>(topics::kFuzzyModel, 1, true)),
       identified_(node.advertise<fmbpc::Identified>(topics::kIdentified,
                                                     queueOf(ListenerKind::kPeer), true)),

@@ -1,4 +1,4 @@
-// The node plant_gateway: a plant that is not ours at the plant's end of the ring, in realtime.
+// The node plant_gateway: a plant that is not ours at the plant's end of the exchange, in realtime.
 #pragma once
 
 #include <memory>

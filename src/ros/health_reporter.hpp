@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "ros/diagnostics.hpp"
 #include "ros/steady_timer.hpp"
 #include "ros/wall_throttle.hpp"

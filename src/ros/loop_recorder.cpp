@@ -65,13 +65,13 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {
-  std::set<std::string> ring{topics::kPlantInfo, topics::kMeasurement, topics::kTracking,
-                             topics::kControlAction};
-  if (!loop.external_plant) ring.insert(topics::kPlantState);
-  if (loop.has_clp) ring.insert({topics::kBaseAction, topics::kSolverReport});
+  std::set<std::string> exchange{topics::kPlantInfo, topics::kMeasurement, topics::kTracking,
+                                 topics::kControlAction};
+  if (!loop.external_plant) exchange.insert(topics::kPlantState);
+  if (loop.has_clp) exchange.insert({topics::kBaseAction, topics::kSolverReport});
   const std::string bag = private_node.param<std::string>("bag", "");
   if (unusable_.empty() && !bag.empty())
-    bag_ = std::make_unique<BagWriter>(node, bag, loop.resolved, ring);
+    bag_ = std::make_unique<BagWriter>(node, bag, loop.resolved, exchange);
   listen(node, topics::kPlantInfo, &LoopRecorder::onPlantInfo);
   listen(node, topics::kMeasurement, &LoopRecorder::onMeasurement);
   listen(node, topics::kTracking, &LoopRecorder::onTracking);

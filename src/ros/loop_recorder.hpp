@@ -1,4 +1,4 @@
-// Listens to the whole ring and writes the files that `fmbpc run --out` writes.
+// Listens to the whole exchange and writes the files that `fmbpc run --out` writes.
 #pragma once
 
 #include <fmbpc/ControlAction.h>
@@ -28,15 +28,15 @@
 
 namespace fpc {
 
-/// Ready when every publisher of the ring is connected. Says of each sample that it has all of it:
-/// a simulated plant goes on only then. What it records is on disk at once (see RecordStore) and
-/// becomes the run's files at its end, at Ctrl-C, and in the next run if the process was killed;
-/// one that comes back goes on with the same record. With a folder that it cannot use it is failed,
-/// says why on run_end, and is never ready. Ends with the run: exit code 0 when it is complete and
-/// written (then `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters:
-/// ~out, folder of the files (nothing is written without it); ~bag, file for all topics; ~keep, the
-/// launch goes on after the run (run_end is not said); ~stay, this node goes on until it is
-/// stopped, as in a launch, which ends by run_end; ~plot, draw plot.png (default true).
+/// Ready when every publisher of the exchange is connected. Says of each sample that it has all of
+/// it: a simulated plant goes on only then. What it records is on disk at once (see RecordStore)
+/// and becomes the run's files at its end, at Ctrl-C, and in the next run if the process was
+/// killed; one that comes back goes on with the same record. With a folder that it cannot use it is
+/// failed, says why on run_end, and is never ready. Ends with the run: exit code 0 when it is
+/// complete and written (then `recorded`, latched, names the folder); otherwise 1, naming the gaps.
+/// Parameters: ~out, folder of the files (nothing is written without it); ~bag, file for all
+/// topics; ~keep, the launch goes on after the run (run_end is not said); ~stay, this node goes on
+/// until it is stopped, as in a launch, which ends by run_end; ~plot, draw plot.png (default true).
 class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }

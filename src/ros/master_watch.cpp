@@ -161,9 +161,9 @@ MasterWatch::MasterWatch(const ros::NodeHandle& node, const ros::NodeHandle& pri
                          const LoopFile& loop)
     : eye_(MasterEye::ofProcess()) {
   std::set<std::string> members;
-  for (const std::string& name : loop.ring.members) members.insert(node.resolveName(name));
+  for (const std::string& name : loop.exchange.members) members.insert(node.resolveName(name));
   std::set<std::string> speakers = members;
-  for (const std::string& name : loop.ring.publishers.at(topics::kPlantInfo))
+  for (const std::string& name : loop.exchange.publishers.at(topics::kPlantInfo))
     speakers.insert(node.resolveName(name));
   node_ = std::make_shared<const WatchedNode>(WatchedNode{KeptParameters(private_node),
                                                           private_node.getNamespace(),

@@ -1,5 +1,5 @@
 // A plant behind Modbus/TCP. All input and output happens in a thread of its own, so that a slow
-// or silent plant never holds up the ring.
+// or silent plant never holds up the exchange.
 #pragma once
 
 #include <condition_variable>

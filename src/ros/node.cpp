@@ -37,7 +37,7 @@ std::string shortened(const std::string& words) {
 Node::Node(const ros::NodeHandle& node, const LoopFile& loop, std::string name)
     : name_(std::move(name)) {
   const std::string& process = ros::this_node::getName();
-  Publishers publishers = loop.ring.publishers;
+  Publishers publishers = loop.exchange.publishers;
   publishers[topics::kOperatorState] = publishers[topics::kTracking];  // both are the controller's
   for (auto& [topic, names] : publishers) {
     for (std::string& one : names) one = node.resolveName(one);

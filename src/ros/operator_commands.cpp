@@ -15,18 +15,18 @@ constexpr double kDeskPatience = 1.0;  // [s] of wall time
 
 }  // namespace
 
-OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
-  OperatorWishes wishes;
-  wishes.manual = msg.manual != 0;
-  wishes.manual_given = msg.manual_given != 0;
-  wishes.manual_input = Eigen::Map<const Vector>(
+OperatorState operatorStateOf(const fmbpc::OperatorState& msg) {
+  OperatorState operator_state;
+  operator_state.manual = msg.manual != 0;
+  operator_state.manual_given = msg.manual_given != 0;
+  operator_state.manual_input = Eigen::Map<const Vector>(
       msg.manual_input.data(), static_cast<Eigen::Index>(msg.manual_input.size()));
-  wishes.recipe = {msg.recipe_held != 0, msg.recipe_held_at, msg.recipe_shift};
-  if (msg.adapt_given) wishes.adapt = msg.adapt != 0;
+  operator_state.recipe = {msg.recipe_held != 0, msg.recipe_held_at, msg.recipe_shift};
+  if (msg.adapt_given) operator_state.adapt = msg.adapt != 0;
   for (std::size_t i = 0; i < msg.setting.size() && i < msg.setting_value.size(); ++i)
-    wishes.settings.emplace_back(msg.setting[i], msg.setting_value[i]);
-  for (const auto& setpoint : msg.setpoint) wishes.setpoints.push_back(fromMsg(setpoint));
-  return wishes;
+    operator_state.settings.emplace_back(msg.setting[i], msg.setting_value[i]);
+  for (const auto& setpoint : msg.setpoint) operator_state.setpoints.push_back(fromMsg(setpoint));
+  return operator_state;
 }
 
 OperatorCommands::OperatorCommands(ros::NodeHandle node, const LoopFile& loop, std::string name,
@@ -74,12 +74,12 @@ void OperatorCommands::takeUp(const fmbpc::OperatorState& msg) {
 }
 
 void OperatorCommands::restore(const fmbpc::OperatorState& msg) {
-  const OperatorWishes wishes = wishesOf(msg);
-  for (const Command& setpoint : wishes.setpoints)
+  const OperatorState operator_state = operatorStateOf(msg);
+  for (const Command& setpoint : operator_state.setpoints)
     ROS_INFO("%s: setpoint of %s restored", name().c_str(), join(setpoint.name).c_str());
-  if (wishes.manual) ROS_INFO("%s: manual restored", name().c_str());
+  if (operator_state.manual) ROS_INFO("%s: manual restored", name().c_str());
   changed_ = true;
-  session_.restore(wishes);
+  session_.restore(operator_state);
 }
 
 void OperatorCommands::tell(const StepHeader& sample) {
@@ -91,25 +91,26 @@ void OperatorCommands::tell(const StepHeader& sample) {
 }
 
 fmbpc::OperatorState OperatorCommands::message(const StepHeader& sample) const {
-  const OperatorWishes wishes = session_.wishes();
+  const OperatorState operator_state = session_.operator_state();
   fmbpc::OperatorState msg;
   msg.header.stamp = toStamp(sample.time_ns);
   msg.run_id = sample.run_id;
   msg.node = name();
-  msg.manual = wishes.manual;
-  msg.manual_given = wishes.manual_given;
-  msg.manual_input.assign(wishes.manual_input.data(),
-                          wishes.manual_input.data() + wishes.manual_input.size());
-  msg.recipe_held = wishes.recipe.held;
-  msg.recipe_held_at = wishes.recipe.held_at;
-  msg.recipe_shift = wishes.recipe.shift;
-  msg.adapt_given = wishes.adapt.has_value();
-  msg.adapt = wishes.adapt.value_or(false);
-  for (const auto& [key, value] : wishes.settings) {
+  msg.manual = operator_state.manual;
+  msg.manual_given = operator_state.manual_given;
+  msg.manual_input.assign(operator_state.manual_input.data(),
+                          operator_state.manual_input.data() + operator_state.manual_input.size());
+  msg.recipe_held = operator_state.recipe.held;
+  msg.recipe_held_at = operator_state.recipe.held_at;
+  msg.recipe_shift = operator_state.recipe.shift;
+  msg.adapt_given = operator_state.adapt.has_value();
+  msg.adapt = operator_state.adapt.value_or(false);
+  for (const auto& [key, value] : operator_state.settings) {
     msg.setting.push_back(key);
     msg.setting_value.push_back(value);
   }
-  for (const Command& setpoint : wishes.setpoints) msg.setpoint.push_back(toSetpointMsg(setpoint));
+  for (const Command& setpoint : operator_state.setpoints)
+    msg.setpoint.push_back(toSetpointMsg(setpoint));
   return msg;
 }
 

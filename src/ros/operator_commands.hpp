@@ -16,7 +16,7 @@ namespace fpc {
 
 /// What the message says, as a controller's session takes it. @throws InputError for a setpoint of
 /// unknown mode.
-OperatorWishes wishesOf(const fmbpc::OperatorState& msg);
+OperatorState operatorStateOf(const fmbpc::OperatorState& msg);
 
 class OperatorCommands : public Node {
  public:

@@ -171,9 +171,9 @@ class Line {
 
   /// [s] of wall time within which the next sample should come.
   double patience() const {
-    const bool by_clock = loop_.ring.pace != Pace::kLockstep;
+    const bool by_clock = loop_.exchange.pace != Pace::kLockstep;
     return kAnswerPatience +
-           (by_clock ? 2.0 * loop_.simulation.sample_time_s / loop_.ring.speedup : 0.0);
+           (by_clock ? 2.0 * loop_.simulation.sample_time_s / loop_.exchange.speedup : 0.0);
   }
 
   std::string state() const {

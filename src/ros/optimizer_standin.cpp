@@ -13,8 +13,8 @@ namespace fpc {
 OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, std::string name,
                                    const Comeback& comeback)
     : Node(node, loop, std::move(name)),
-      watch_(loop.ring.pace, loop.plant_info.sample_time_s / loop.ring.speedup,
-             loop.ring.optimizer_timeout_s),
+      watch_(loop.exchange.pace, loop.plant_info.sample_time_s / loop.exchange.speedup,
+             loop.exchange.optimizer_timeout_s),
       optimizer_(node.resolveName("clp_optimizer")),
       action_(node, topics::kControlAction, comeback, audienceOf(node, authority())),
       report_(node, topics::kSolverReport, comeback, audienceOf(node, authority())),

@@ -8,8 +8,8 @@
 
 #include <string>
 
+#include "ros/exchange_publisher.hpp"
 #include "ros/node.hpp"
-#include "ros/ring_publisher.hpp"
 #include "runtime/first_answers.hpp"
 #include "runtime/optimizer_watch.hpp"
 #include "runtime/session.hpp"
@@ -41,8 +41,8 @@ class OptimizerStandin : public Node {
   bool sent_{false};  // base_ went to the plant
   int unheard_{};     // times that it was sent and has not come back on the topic
   WallThrottle log_{1.0};
-  RingPublisher<fmbpc::ControlAction> action_;
-  RingPublisher<fmbpc::SolverReport> report_;
+  ExchangePublisher<fmbpc::ControlAction> action_;
+  ExchangePublisher<fmbpc::SolverReport> report_;
   ros::Subscriber subscriber_;
   SteadyTimer timer_;
 };

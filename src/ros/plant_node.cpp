@@ -20,7 +20,7 @@ constexpr double kPlantLastWords = 0.3;  // [s] between run_end and the end of t
 constexpr char kRecorder[] = "loop_recorder";
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
-  std::vector<std::string> names = loop.ring.wait_for;
+  std::vector<std::string> names = loop.exchange.wait_for;
   std::istringstream also(private_node.param<std::string>("also_wait_for", ""));
   for (std::string name; also >> name;) names.push_back(name);
   return names;
@@ -28,7 +28,7 @@ std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHan
 
 /// The nodes of ours that beat.
 std::vector<std::string> namesToWatch(const LoopFile& loop, const ros::NodeHandle& node) {
-  std::vector<std::string> names = loop.ring.members;
+  std::vector<std::string> names = loop.exchange.members;
   for (std::string& name : names) name = node.resolveName(name);
   return names;
 }
@@ -122,9 +122,10 @@ void PlantNode::waitForOthers() {
   if (missing_.empty() && keeper_.knowsWhatStands(steadyNow()) && listeners_->open())
     return start();
   if (missing_.empty()) return;
-  if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
-  failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
-             " s: " + ready_.named(missing_);
+  if (steadyNow() - begun_s_ < loop_.exchange.ready_timeout_s) return;
+  failure_ =
+      "not ready within loop.ready_timeout_s = " + exactText(loop_.exchange.ready_timeout_s) +
+      " s: " + ready_.named(missing_);
   failed_s_ = steadyNow();
   end_.say(failure_);
   health_.look();
@@ -317,7 +318,7 @@ Health PlantNode::runningHealth(double now_s) const {
   const Health plant = plantHealth();
   const bool its_own_hand = plant.mode == LoopMode::kManual;
   const bool late =
-      session_.unansweredFor(now_s) > kActionPatience && loop_.ring.pace != Pace::kRealtime;
+      session_.unansweredFor(now_s) > kActionPatience && loop_.exchange.pace != Pace::kRealtime;
   const LoopMode worst = late ? std::max(others.mode, LoopMode::kStalled) : others.mode;
   if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= worst)) return plant;
   if (late)

@@ -1,4 +1,4 @@
-// The plant's end of the ring as a node, whatever plant it is: converts, asks its session,
+// The plant's end of the exchange as a node, whatever plant it is: converts, asks its session,
 // publishes.
 #pragma once
 

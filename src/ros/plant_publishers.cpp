@@ -18,7 +18,7 @@ PlantPublishers::PlantPublishers(ros::NodeHandle node, const LoopFile& loop, con
       signals_(node) {
   // Told to whoever connects, so that tools which start while sample 0 is held already have a time
   // that is not 0. Not latched: roscpp would wake its thread at every sample though nobody listens.
-  if (loop.ring.publish_clock) {
+  if (loop.exchange.publish_clock) {
     clock_ = node.advertise<rosgraph_msgs::Clock>(
         topics::kClock, queueOf(ListenerKind::kViewer),
         [this](const ros::SingleSubscriberPublisher& listener) {

@@ -40,9 +40,9 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
                 namesOf(makePlant(loop.simulation)->description().disturbances)),
       simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
       lines_(node, loop.tf.sample_lines),
-      links_(node, private_node, loop.ring.pace, LinkInbox::Of::kPlant,
+      links_(node, private_node, loop.exchange.pace, LinkInbox::Of::kPlant,
              [this] { guarded(topics::kMeasurement, [this] { takeParked(); }); }),
-      commands_(loop.ring.commands_per_s, kCommandBurst),
+      commands_(loop.exchange.commands_per_s, kCommandBurst),
       state_(
           node.advertise<fmbpc::PlantState>(topics::kPlantState, queueOf(ListenerKind::kRecord))),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect,

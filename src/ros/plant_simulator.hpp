@@ -1,4 +1,4 @@
-// The node that stands for the process: a simulation at the plant's end of the ring.
+// The node that stands for the process: a simulation at the plant's end of the exchange.
 #pragma once
 
 #include <fmbpc/CommandEffect.h>

@@ -11,7 +11,7 @@ namespace fpc {
 enum class ListenerKind {
   kLaw,     ///< answers samples: measurement, base_action, predictive_action
   kRecord,  ///< must have every sample: recorder, identifier, bags; what is published for a record
-  kPeer,    ///< what members of the ring tell each other besides samples; the plant
+  kPeer,    ///< what members of the exchange tell each other besides samples; the plant
   kViewer,  ///< commands of people, signals, the clock
 };
 

@@ -16,7 +16,7 @@ Health LoopRecorder::health(double now_s) const {
   if (bag_ && !bag_->problem().empty())
     return {LoopMode::kFailed, EventCode::kRecordingFailed, bag_->problem(), {}};
   if (!ready_.announced())
-    return {LoopMode::kStarting, EventCode::kWaiting, "waiting for publishers of the ring", {}};
+    return {LoopMode::kStarting, EventCode::kWaiting, "waiting for publishers of the exchange", {}};
   if (written_) return {LoopMode::kFinished, EventCode::kNone, "written", {}};
   if (lacks_s_ >= 0 && now_s - lacks_s_ > kLacking)
     return {LoopMode::kDegraded, EventCode::kRecordGap, "recording, with gaps: " + lacks_, {}};

@@ -24,7 +24,7 @@ TargetOptimizer::TargetOptimizer(ros::NodeHandle node, const ros::NodeHandle& pr
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(makeTargetSession(loop)),
-      inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
+      inbox_(loop.has_identify && loop.exchange.pace == Pace::kLockstep),
       ready_(node, loop, name(),
              [this] { return plant_.open() && session_.ready() && listeners_.connected(); }),
       signals_(node),
@@ -36,7 +36,7 @@ TargetOptimizer::TargetOptimizer(ros::NodeHandle node, const ros::NodeHandle& pr
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &TargetOptimizer::onModel, this)),
       identified_subscriber_(subscribe(node, topics::kIdentified, queueOf(ListenerKind::kPeer),
                                        &TargetOptimizer::onIdentified, this)),
-      measurement_subscriber_(subscribeLaw(node, topics::kMeasurement, loop.ring.pace,
+      measurement_subscriber_(subscribeLaw(node, topics::kMeasurement, loop.exchange.pace,
                                            &TargetOptimizer::onMeasurement, this)),
       setpoint_subscriber_(subscribe(node, topics::kSetpoint, queueOf(ListenerKind::kViewer),
                                      &TargetOptimizer::onSetpoint, this)),
@@ -143,9 +143,9 @@ Health TargetOptimizer::health(double now_s) const {
   if (session_.counts().accepted == 0)
     return {LoopMode::kStarting, EventCode::kWaiting, "waiting for the first measurement", {}};
   if (const auto rest = summary_.rest()) return *rest;
-  const double period_s = loop_.ring.pace == Pace::kLockstep
+  const double period_s = loop_.exchange.pace == Pace::kLockstep
                               ? 0.0
-                              : loop_.plant_info.sample_time_s / loop_.ring.speedup;
+                              : loop_.plant_info.sample_time_s / loop_.exchange.speedup;
   if (now_s - heard_s_ > period_s + kNoSample)
     return {LoopMode::kStalled,
             EventCode::kNoMeasurement,

@@ -14,12 +14,12 @@
 #include <string>
 
 #include "config/loop_file.hpp"
+#include "ros/exchange_publisher.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
-#include "ros/ring_publisher.hpp"
 #include "ros/signal_publishers.hpp"
 #include "ros/summary_listener.hpp"
 #include "runtime/first_answers.hpp"
@@ -61,7 +61,7 @@ class TargetOptimizer : public Node {
   double heard_s_{};
 
   Comeback comeback_;
-  RingPublisher<fmbpc::Targets> targets_;
+  ExchangePublisher<fmbpc::Targets> targets_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, identified_subscriber_,
       measurement_subscriber_, setpoint_subscriber_;

@@ -1,4 +1,4 @@
-// Who may say what in the ring: publishers by topic. Others are refused and counted by name.
+// Who may say what in the exchange: publishers by topic. Others are refused and counted by name.
 #pragma once
 
 #include <cstdint>

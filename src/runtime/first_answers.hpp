@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 
 namespace fpc {
 

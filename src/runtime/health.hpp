@@ -1,4 +1,4 @@
-// How a member of the ring is, in one word and in a sentence, and what the plant makes of all.
+// How a member of the exchange is, in one word and in a sentence, and what the plant makes of all.
 #pragma once
 
 #include <cstdint>

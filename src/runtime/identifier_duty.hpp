@@ -1,4 +1,4 @@
-// What an identifier owes the ring beside its models: a word when it has done with a sample.
+// What an identifier owes the exchange beside its models: a word when it has done with a sample.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// The model's keeper as a member of the ring: when to identify, what is learned online, and which
-// models may be handed over. The node and the run in one process are made of it.
+// The model's keeper as a member of the exchange: when to identify, what is learned online, and
+// which models may be handed over. The node and the run in one process are made of it.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "config/plant_loops.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 
 namespace fpc {
 

@@ -5,7 +5,7 @@
 
 namespace fpc {
 
-/// Calls `tell` with the name of each topic that is missing, in the order of the ring. The last
+/// Calls `tell` with the name of each topic that is missing, in the order of the exchange. The last
 /// sample of a run has no action.
 template <typename Tell>
 void forMissingParts(const SampleRecord& sample, bool has_optimizer, bool has_state, Tell tell) {

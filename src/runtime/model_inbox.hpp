@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fmbpc/base/event.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/model/ts_model.hpp"
 
 namespace fpc {

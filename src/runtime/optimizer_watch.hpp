@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "config/loop_file.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "runtime/own_wait.hpp"
 
 namespace fpc {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "control/controller_around.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "runtime/link_inbox.hpp"
 #include "runtime/session.hpp"
 

@@ -1,4 +1,4 @@
-// A plant that is not ours, as the ring sees it: readings of any time become samples, actions
+// A plant that is not ours, as the exchange sees it: readings of any time become samples, actions
 // become commands that keep every limit, whatever arrives and whatever does not.
 #pragma once
 
@@ -76,7 +76,7 @@ class PlantGateway : public Process {
   void confirm(std::uint64_t number, double now_s);  ///< it has been told this
   void fail(std::uint64_t number, double now_s);     ///< it may have been told this, or not
 
-  // The ring's side.
+  // The exchange's side.
   const PlantInfo& info() const override { return info_; }
   const Measurement& measurement() const override { return measurement_; }
   const Actuator& actuator() const override { return actuator_; }

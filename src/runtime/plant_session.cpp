@@ -17,10 +17,10 @@ PlantPolicy lockstepPolicy(const LoopFile& loop) {
 
 PlantPolicy ringPolicy(const LoopFile& loop) {
   PlantPolicy policy = lockstepPolicy(loop);
-  policy.pace = loop.ring.pace;
-  policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
-  policy.action_timeout_s = loop.ring.action_timeout_s;
-  const auto& names = loop.ring.wait_for;
+  policy.pace = loop.exchange.pace;
+  policy.period_s = loop.simulation.sample_time_s / loop.exchange.speedup;
+  policy.action_timeout_s = loop.exchange.action_timeout_s;
+  const auto& names = loop.exchange.wait_for;
   const bool waits = std::count(names.begin(), names.end(), "loop_recorder") > 0;
   if (waits && !loop.external_plant) policy.record_timeout_s = kRecordTimeout;
   return policy;

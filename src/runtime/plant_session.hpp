@@ -1,4 +1,4 @@
-// The plant as a member of the ring: which actions it takes, when it moves on, and what it does
+// The plant as a member of the exchange: which actions it takes, when it moves on, and what it does
 // when none comes. The node and the run in one process are made of it.
 #pragma once
 

@@ -109,7 +109,8 @@ class Replay {
       if (layer_) layer_->setModel(model);
       controller_.setModel(model);
     });
-    upTo(run_.wishes, wish_, step, [this](const OperatorWishes& wishes) { ask(wishes); });
+    upTo(run_.operator_state, wish_, step,
+         [this](const OperatorState& operator_state) { ask(operator_state); });
     upTo(run_.setpoints, setpoint_, step, [this](const Command& command) {
       if (layer_) layer_->command(command);
       controller_.command(command);
@@ -128,17 +129,19 @@ class Replay {
   }
 
   /// Only what differs from what was asked before. Setpoints come by their own effects.
-  void ask(const OperatorWishes& wishes) {
-    const OperatorWishes before = controller_.wishes();
-    if (wishes.manual != before.manual) controller_.manual(wishes.manual);
+  void ask(const OperatorState& operator_state) {
+    const OperatorState before = controller_.operator_state();
+    if (operator_state.manual != before.manual) controller_.manual(operator_state.manual);
     const bool same_input =
-        before.manual_given && sameBits(before.manual_input, wishes.manual_input);
-    if (wishes.manual && wishes.manual_given && !same_input)
-      controller_.manualInput(wishes.manual_input);
-    if (wishes.recipe.held != before.recipe.held) controller_.holdRecipe(wishes.recipe.held);
-    if (wishes.adapt && wishes.adapt != before.adapt) controller_.adapt(*wishes.adapt);
-    if (!wishes.settings.empty() && wishes.settings != before.settings)
-      controller_.retune(wishes.settings);
+        before.manual_given && sameBits(before.manual_input, operator_state.manual_input);
+    if (operator_state.manual && operator_state.manual_given && !same_input)
+      controller_.manualInput(operator_state.manual_input);
+    if (operator_state.recipe.held != before.recipe.held)
+      controller_.holdRecipe(operator_state.recipe.held);
+    if (operator_state.adapt && operator_state.adapt != before.adapt)
+      controller_.adapt(*operator_state.adapt);
+    if (!operator_state.settings.empty() && operator_state.settings != before.settings)
+      controller_.retune(operator_state.settings);
   }
 
   void check(std::uint32_t step) {
@@ -176,7 +179,7 @@ class Replay {
   std::optional<OptimizerSession> optimizer_;
   ReplayResult result_;
   decltype(RecordedRun::models)::const_iterator model_{run_.models.begin()};
-  decltype(RecordedRun::wishes)::const_iterator wish_{run_.wishes.begin()};
+  decltype(RecordedRun::operator_state)::const_iterator wish_{run_.operator_state.begin()};
   decltype(RecordedRun::setpoints)::const_iterator setpoint_{run_.setpoints.begin()};
 };
 

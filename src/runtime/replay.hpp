@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/loop_file.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/model/ts_model.hpp"
 #include "runtime/session.hpp"
 
@@ -22,9 +22,10 @@ struct RecordedRun {
   /// Everything that was on control_action: the optimizer's, and the base action where the
   /// controller had to stand in for it.
   std::multimap<std::uint32_t, ControlAction> control;
-  std::multimap<std::uint32_t, Command> setpoints;      ///< by the sample at which they took effect
-  std::multimap<std::uint32_t, OperatorWishes> wishes;  ///< by the sample from which they act
-  std::multimap<std::uint32_t, TsModel> models;         ///< by the sample from which they are used
+  std::multimap<std::uint32_t, Command> setpoints;  ///< by the sample at which they took effect
+  std::multimap<std::uint32_t, OperatorState>
+      operator_state;                            ///< by the sample from which they act
+  std::multimap<std::uint32_t, TsModel> models;  ///< by the sample from which they are used
 };
 
 /// Actions of one kind.

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "runtime/loop_ring.hpp"
+#include "runtime/loop_exchange.hpp"
 #include "runtime/plan.hpp"
 
 namespace fpc {
@@ -11,42 +11,43 @@ namespace {
 /// One loop, and how far it is.
 struct TurningLoop {
   const PlantLoop* of;
-  std::unique_ptr<LoopRing> ring;
+  std::unique_ptr<LoopExchange> exchange;
   bool answered{false}, over{false};
   bool tells_plan{false};  // another one expects what it plans
 };
 
 void tell(const TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
-  const Measurement& now = loop.ring->measurement();
+  const Measurement& now = loop.exchange->measurement();
   for (TurningLoop* other : listeners)
-    other->ring->hear(loop.of->name, LoopLink::Of::kOutputs, now.header, now.outputs);
+    other->exchange->hear(loop.of->name, LoopLink::Of::kOutputs, now.header, now.outputs);
 }
 
 void tellAnswer(const TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
-  if (listeners.empty() || loop.ring->measurement().final) return;
-  const ControlAction& sent = loop.ring->sent();
-  const ControllerAnswer& answer = loop.ring->answered();
+  if (listeners.empty() || loop.exchange->measurement().final) return;
+  const ControlAction& sent = loop.exchange->sent();
+  const ControllerAnswer& answer = loop.exchange->answered();
   const Matrix plan =
       loop.tells_plan && answer.has_prediction ? planOf(answer.prediction) : Matrix();
   for (TurningLoop* other : listeners) {
-    other->ring->hear(loop.of->name, LoopLink::Of::kInputs, sent.header, sent.input,
-                      isLawsOwn(sent.source));
-    if (loop.tells_plan) other->ring->hear(loop.of->name, LoopLink::Of::kPlan, sent.header, plan);
+    other->exchange->hear(loop.of->name, LoopLink::Of::kInputs, sent.header, sent.input,
+                          isLawsOwn(sent.source));
+    if (loop.tells_plan)
+      other->exchange->hear(loop.of->name, LoopLink::Of::kPlan, sent.header, plan);
   }
 }
 
 /// True: the loop has got on by half a sample.
 bool turn(TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
   if (loop.over) return false;
-  LoopRing& ring = *loop.ring;
+  LoopExchange& exchange = *loop.exchange;
   if (!loop.answered) {
-    if (!ring.mayAnswer()) return false;
-    ring.answer();
+    if (!exchange.mayAnswer()) return false;
+    exchange.answer();
     tellAnswer(loop, listeners);
     return loop.answered = true;
   }
-  if (!ring.measurement().final && !ring.mayAdvance()) return false;
-  loop.over = !ring.advance();
+  if (!exchange.measurement().final && !exchange.mayAdvance()) return false;
+  loop.over = !exchange.advance();
   loop.answered = false;
   if (loop.over) return true;
   tell(loop, listeners);
@@ -71,7 +72,7 @@ std::vector<TurningLoop*> listenersOf(TurningLoop& loop, std::vector<TurningLoop
 std::vector<RunRecord> runPlant(const PlantLoops& plant, const RunOptions& options) {
   std::vector<TurningLoop> loops;
   for (const PlantLoop& one : plant.loops)
-    loops.push_back({&one, std::make_unique<LoopRing>(one.loop, options, one.links)});
+    loops.push_back({&one, std::make_unique<LoopExchange>(one.loop, options, one.links)});
   std::vector<std::vector<TurningLoop*>> listeners;
   for (TurningLoop& loop : loops) listeners.push_back(listenersOf(loop, loops));
   for (std::size_t i = 0; i < loops.size(); ++i) tell(loops[i], listeners[i]);
@@ -80,7 +81,7 @@ std::vector<RunRecord> runPlant(const PlantLoops& plant, const RunOptions& optio
     for (std::size_t i = 0; i < loops.size(); ++i) any = turn(loops[i], listeners[i]) || any;
   }
   std::vector<RunRecord> records;
-  for (TurningLoop& loop : loops) records.push_back(loop.ring->take());
+  for (TurningLoop& loop : loops) records.push_back(loop.exchange->take());
   return records;
 }
 

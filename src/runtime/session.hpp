@@ -1,6 +1,6 @@
-// A controller or an optimizer behind the rules of the ring: repeats get the cached answer, gaps
-// reset, NaN holds. The same objects serve the nodes and the in-process loop, which is why both
-// give the same numbers.
+// A controller or an optimizer behind the rules of the exchange: repeats get the cached answer,
+// gaps reset, NaN holds. The same objects serve the nodes and the in-process loop, which is why
+// both give the same numbers.
 #pragma once
 
 #include <memory>
@@ -37,7 +37,7 @@ struct ControllerAnswer {
 
 /// What an operator has asked of a controller, apart from its model: kept by others for one that
 /// comes back.
-struct OperatorWishes {
+struct OperatorState {
   bool manual{}, manual_given{};
   Vector manual_input;  ///< n_u if manual_given
   SetpointSource::Recipe recipe;
@@ -140,10 +140,10 @@ class ControllerSession {
   /// law then goes on bumplessly. @throws InputError while another one is open.
   void test(std::shared_ptr<PlantTap> tap);
 
-  OperatorWishes wishes() const;
+  OperatorState operator_state() const;
   /// Before the first sample. What has been asked of this object itself is newer and stays.
   /// @throws InputError for what the controller refuses; the rest is taken.
-  void restore(const OperatorWishes& wishes);
+  void restore(const OperatorState& operator_state);
   /// The next new run is the same plant going on, not another beginning: setpoints stay in force
   /// and the schedule goes on from where it is (see SetpointSource::carryOver).
   void carryOver() { carries_ = true; }
@@ -196,7 +196,7 @@ class ControllerSession {
   bool foresee(const Measurement& m, Eigen::Ref<Vector> outputs);
   void noteNeeds();
   void sendManual(const Measurement& m);
-  void restoreManual(const OperatorWishes& wishes);
+  void restoreManual(const OperatorState& operator_state);
   void beginAnew();
 
   std::unique_ptr<Controller> controller_;
@@ -241,13 +241,13 @@ class ControllerSession {
 /// What a law asks for is solved with its prediction; other inputs are passed through.
 bool needsPrediction(ActionSource source);
 
-/// The optimizer behind the ring: pairs base action and prediction of the same sample. Base actions
-/// of source base or clipped need a prediction; all others (held, manual, fallback) pass through
-/// with status not run. A prediction of wrong size, or not finite, is counted and the base action
-/// goes out inside the bounds with status invalid problem, so that the loop never stalls. A base
-/// action of wrong size, or not finite, is dropped and counted. After manual, a fallback and a held
-/// input that was not ours, what goes out starts where the plant is (BumplessTransfer), whatever
-/// the limits of outputs ask for: input and move limits hold.
+/// The optimizer behind the exchange: pairs base action and prediction of the same sample. Base
+/// actions of source base or clipped need a prediction; all others (held, manual, fallback) pass
+/// through with status not run. A prediction of wrong size, or not finite, is counted and the base
+/// action goes out inside the bounds with status invalid problem, so that the loop never stalls. A
+/// base action of wrong size, or not finite, is dropped and counted. After manual, a fallback and a
+/// held input that was not ours, what goes out starts where the plant is (BumplessTransfer),
+/// whatever the limits of outputs ask for: input and move limits hold.
 class OptimizerSession {
  public:
   /// @throws InputError naming the field.

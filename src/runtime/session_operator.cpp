@@ -99,21 +99,21 @@ void ControllerSession::test(std::shared_ptr<PlantTap> tap) {
   tap_ = std::move(tap);
 }
 
-OperatorWishes ControllerSession::wishes() const {
+OperatorState ControllerSession::operator_state() const {
   return {manual_, manual_given_, manual_input_,       setpoint_.recipe(),
           adapt_,  settings_,     setpoint_.standing()};
 }
 
-void ControllerSession::restore(const OperatorWishes& wishes) {
+void ControllerSession::restore(const OperatorState& operator_state) {
   if (gate_.counts().accepted > 0) return;
-  if (!manual_asked_) restoreManual(wishes);
-  const bool hold = recipe_asked_ ? setpoint_.held() : wishes.recipe.held;
-  setpoint_.restore(wishes.recipe);
+  if (!manual_asked_) restoreManual(operator_state);
+  const bool hold = recipe_asked_ ? setpoint_.held() : operator_state.recipe.held;
+  setpoint_.restore(operator_state.recipe);
   setpoint_.hold(hold);
-  for (const Command& command : wishes.setpoints) setpoint_.restore(command);
-  if (wishes.adapt && !adapt_) adapt(*wishes.adapt);
+  for (const Command& command : operator_state.setpoints) setpoint_.restore(command);
+  if (operator_state.adapt && !adapt_) adapt(*operator_state.adapt);
   Settings older;
-  for (const auto& setting : wishes.settings)
+  for (const auto& setting : operator_state.settings)
     if (std::none_of(settings_.begin(), settings_.end(),
                      [&](const auto& asked) { return asked.first == setting.first; }))
       older.push_back(setting);
@@ -127,12 +127,13 @@ void ControllerSession::beginAnew() {
     setpoint_.restart();
 }
 
-void ControllerSession::restoreManual(const OperatorWishes& wishes) {
-  manual_ = wishes.manual;
-  manual_given_ = wishes.manual_given && wishes.manual_input.size() == last_input_.size() &&
-                  wishes.manual_input.allFinite();
+void ControllerSession::restoreManual(const OperatorState& operator_state) {
+  manual_ = operator_state.manual;
+  manual_given_ = operator_state.manual_given &&
+                  operator_state.manual_input.size() == last_input_.size() &&
+                  operator_state.manual_input.allFinite();
   if (manual_given_)
-    manual_input_ = wishes.manual_input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+    manual_input_ = operator_state.manual_input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
 }
 
 }  // namespace fpc

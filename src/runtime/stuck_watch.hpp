@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/input_limits.hpp"
-#include "fmbpc/base/ring.hpp"
 #include "supervision/plausibility_params.hpp"
 
 namespace fpc {

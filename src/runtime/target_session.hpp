@@ -1,4 +1,4 @@
-// The target layer behind the rules of the ring: repeats get the cached answer, gaps reset.
+// The target layer behind the rules of the exchange: repeats get the cached answer, gaps reset.
 #pragma once
 
 #include <vector>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fmbpc/base/event.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "supervision/forecast_parts.hpp"
 
 namespace fpc {

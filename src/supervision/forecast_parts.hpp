@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/model/local_model.hpp"
 
 namespace fpc {

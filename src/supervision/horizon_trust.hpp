@@ -1,7 +1,7 @@
 // How far ahead a law's plan stays where its model has data.
 #pragma once
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/control/plan_view.hpp"
 #include "fmbpc/model/ts_model.hpp"
 

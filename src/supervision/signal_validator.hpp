@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fmbpc/base/event.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "supervision/flat_line.hpp"
 #include "supervision/plausibility_params.hpp"
 

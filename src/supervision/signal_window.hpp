@@ -1,7 +1,7 @@
 // The newest samples of all that is measured or applied.
 #pragma once
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

@@ -144,7 +144,7 @@ TEST_F(Resolve, OverridesReachScalarsItemsAndNewKeys) {
   EXPECT_EQ(loop.controllerParams<PiParams>().loops.at(0).kp, 2.5);
   EXPECT_EQ(loop.simulation.noise_std[1], 1.5);
   EXPECT_EQ(loop.simulation.actuator.limits.move[0], 20.0);
-  EXPECT_TRUE(loop.ring.wait_for.empty());
+  EXPECT_TRUE(loop.exchange.wait_for.empty());
 }
 
 TEST_F(Resolve, ALaterOverrideWinsAndATypeTakesTheOldKeysAway) {
@@ -247,11 +247,12 @@ TEST_F(Resolve, SampleLinesGiveTheTransportDelay) {
   EXPECT_EQ(loop.tf.sample_lines.at(0).to, "lab");
 }
 
-TEST_F(Resolve, TheRingWaitsForTheNodesTheLoopNeeds) {
+TEST_F(Resolve, TheExchangeWaitsForTheNodesTheLoopNeeds) {
   using Names = std::vector<std::string>;
-  EXPECT_EQ(readLoop("asp_case1_clp").ring.wait_for,
+  EXPECT_EQ(readLoop("asp_case1_clp").exchange.wait_for,
             (Names{"loop_recorder", "fmbpc_controller", "fuzzy_identifier", "clp_optimizer"}));
-  EXPECT_EQ(readLoop("asp_case1_pi_x").ring.wait_for, (Names{"loop_recorder", "fmbpc_controller"}));
+  EXPECT_EQ(readLoop("asp_case1_pi_x").exchange.wait_for,
+            (Names{"loop_recorder", "fmbpc_controller"}));
 }
 
 }  // namespace config_extends_test

@@ -47,19 +47,19 @@ TEST(GatewayParams, ReadsTheTagMapOfRegisters) {
 
 TEST(GatewayParams, RunsInRealtimeWhateverTheLoopSays) {
   const LoopFile loop = gatewayLoop("  type: float64\n  speedup: 5\nloop: {pace: paced}\n");
-  EXPECT_EQ(loop.ring.pace, Pace::kRealtime);
-  EXPECT_EQ(loop.ring.speedup, 5.0);
-  EXPECT_EQ(loop.ring.publishers.at("measurement"), std::vector<std::string>{"plant_gateway"});
+  EXPECT_EQ(loop.exchange.pace, Pace::kRealtime);
+  EXPECT_EQ(loop.exchange.speedup, 5.0);
+  EXPECT_EQ(loop.exchange.publishers.at("measurement"), std::vector<std::string>{"plant_gateway"});
 }
 
 TEST(GatewayParams, WhoMaySetAndEnableIsNamedByTheLoop) {
   using Names = std::vector<std::string>;
-  const auto publishers = gatewayLoop("  type: float64\n").ring.publishers;
+  const auto publishers = gatewayLoop("  type: float64\n").exchange.publishers;
   for (const char* key : {"setpoint", "enable", "tags", "services"})
     EXPECT_EQ(publishers.at(key), Names()) << key;  // anyone
   const auto named =
       gatewayLoop("  type: float64\nloop: {publishers: {setpoint: [hmi], enable: [panel]}}\n")
-          .ring.publishers;
+          .exchange.publishers;
   EXPECT_EQ(named.at("setpoint"), (Names{"hmi", "plant_gateway"}));  // which forwards those of hmi
   EXPECT_EQ(named.at("enable"), Names{"panel"});
 }

@@ -252,9 +252,9 @@ std::map<std::string, std::string> structDefaults() {
           {"clp.output_penalty", exactText(clp.output_penalty)},
           {"clp.qp.max_iterations", std::to_string(clp.qp.max_iterations)},
           {"actuator.hold_samples", std::to_string(loop.simulation.actuator.hold_samples)},
-          {"loop.speedup", exactText(loop.ring.speedup)},
-          {"loop.ready_timeout_s", exactText(loop.ring.ready_timeout_s)},
-          {"loop.publish_clock", word(loop.ring.publish_clock)},
+          {"loop.speedup", exactText(loop.exchange.speedup)},
+          {"loop.ready_timeout_s", exactText(loop.exchange.ready_timeout_s)},
+          {"loop.publish_clock", word(loop.exchange.publish_clock)},
           {"tf.broadcast", word(loop.tf.broadcast)}};
 }
 

@@ -26,7 +26,7 @@ TEST_F(LoopErrors, AnIdentifierNeedsNoModelAndIsWaitedFor) {
   EXPECT_EQ(loop.identify.structure.name, "asp_d");
   EXPECT_TRUE(loop.identify.online.enabled);
   EXPECT_EQ(loop.identify.online.every, 7);
-  EXPECT_EQ(loop.ring.wait_for.back(), "fuzzy_identifier");
+  EXPECT_EQ(loop.exchange.wait_for.back(), "fuzzy_identifier");
 }
 
 /// A mistake, written below the small loop or by an override, and the words of its error.

@@ -5,9 +5,9 @@ namespace control_controller_session_test {
 
 using namespace test_session;
 
-class ControllerSessionRing : public SessionFixture {};
+class ControllerSessionExchange : public SessionFixture {};
 
-TEST_F(ControllerSessionRing, AnswersEachNewSampleOnceUnderItsHeader) {
+TEST_F(ControllerSessionExchange, AnswersEachNewSampleOnceUnderItsHeader) {
   for (std::uint32_t k = 0; k < 3; ++k) {
     ASSERT_EQ(session->receive(sample(k)), Receipt::kAnswered);
     const ControllerAnswer& answer = session->answer();
@@ -30,7 +30,7 @@ TEST_F(ControllerSessionRing, AnswersEachNewSampleOnceUnderItsHeader) {
   EXPECT_EQ(session->resetReason(), "");
 }
 
-TEST_F(ControllerSessionRing, RepeatGetsTheCachedAnswerAndIsNeverComputedTwice) {
+TEST_F(ControllerSessionExchange, RepeatGetsTheCachedAnswerAndIsNeverComputedTwice) {
   session->receive(sample(0));
   Measurement again = sample(0);
   again.input_applied[0] = 900.0;
@@ -40,7 +40,7 @@ TEST_F(ControllerSessionRing, RepeatGetsTheCachedAnswerAndIsNeverComputedTwice) 
   EXPECT_EQ(session->counts().repeated, 1u);
 }
 
-TEST_F(ControllerSessionRing, OldStepsAndEarlierRunsAreDroppedAndCountedApart) {
+TEST_F(ControllerSessionExchange, OldStepsAndEarlierRunsAreDroppedAndCountedApart) {
   session->receive(sample(0, 5));
   session->receive(sample(1, 5));
   EXPECT_EQ(session->receive(sample(0, 5)), Receipt::kDropped);
@@ -52,7 +52,7 @@ TEST_F(ControllerSessionRing, OldStepsAndEarlierRunsAreDroppedAndCountedApart) {
   EXPECT_EQ(law->resets, Steps{0});
 }
 
-TEST_F(ControllerSessionRing, WrongSizesAreDroppedAndDoNotTouchTheSequence) {
+TEST_F(ControllerSessionExchange, WrongSizesAreDroppedAndDoNotTouchTheSequence) {
   session->receive(sample(0));
   Measurement m = sample(1);
   m.outputs = of({1.0});
@@ -90,7 +90,7 @@ TEST(ControllerSession, ALawThatOnlyGivesAnInputActsAlsoAfterItWasHeld) {
   EXPECT_EQ(session.answer().base.input[0], 571.0);
 }
 
-TEST_F(ControllerSessionRing, GapResetsAndNamesTheMissingSamples) {
+TEST_F(ControllerSessionExchange, GapResetsAndNamesTheMissingSamples) {
   session->receive(sample(0));
   session->receive(sample(4));
   EXPECT_EQ(session->resetReason(), "samples 1..3 missing");
@@ -102,7 +102,7 @@ TEST_F(ControllerSessionRing, GapResetsAndNamesTheMissingSamples) {
   EXPECT_EQ(session->counts().gaps, 2u);
 }
 
-TEST_F(ControllerSessionRing, NewRunResetsAndReleasesSetpointCommands) {
+TEST_F(ControllerSessionExchange, NewRunResetsAndReleasesSetpointCommands) {
   session->receive(sample(0, 1));
   session->command({0, {"x"}, {2200.0}, CommandMode::kOverride});
   session->receive(sample(1, 1));
@@ -114,7 +114,7 @@ TEST_F(ControllerSessionRing, NewRunResetsAndReleasesSetpointCommands) {
   EXPECT_EQ(session->counts().new_runs, 1u);
 }
 
-TEST_F(ControllerSessionRing, LateJoinerStartsAtWhateverSampleComes) {
+TEST_F(ControllerSessionExchange, LateJoinerStartsAtWhateverSampleComes) {
   SetpointParams p = setpoints();
   p.schedule = {{1.0, of({55.0, 1900.0})}};
   p.rate_per_h = of({1.0, 1.0});
@@ -126,7 +126,7 @@ TEST_F(ControllerSessionRing, LateJoinerStartsAtWhateverSampleComes) {
   EXPECT_EQ(session->counts().gaps, 0u);
 }
 
-TEST_F(ControllerSessionRing, SetpointsCatchUpOverAGap) {
+TEST_F(ControllerSessionExchange, SetpointsCatchUpOverAGap) {
   SetpointParams p = setpoints();
   p.schedule = {{0.4, of({55.0, 1900.0})}};
   p.rate_per_h = of({1e9, 50.0});  // 10 per sample
@@ -136,7 +136,7 @@ TEST_F(ControllerSessionRing, SetpointsCatchUpOverAGap) {
   EXPECT_NEAR(session->answer().tracking.setpoint[1], 1940.0, 1e-9);
 }
 
-TEST_F(ControllerSessionRing, SetpointCommandsTakeEffectUnderTheSamplesHeader) {
+TEST_F(ControllerSessionExchange, SetpointCommandsTakeEffectUnderTheSamplesHeader) {
   session->receive(sample(0, 3));
   EXPECT_EQ(session->command({0, {"x"}, {2100.0}, CommandMode::kOverride}), 1u);
   session->receive(sample(1, 3));
@@ -148,14 +148,14 @@ TEST_F(ControllerSessionRing, SetpointCommandsTakeEffectUnderTheSamplesHeader) {
   EXPECT_TRUE(session->answer().effects.empty());
 }
 
-TEST_F(ControllerSessionRing, RespawnedSessionTakesUpTheSetpointThatWasInForce) {
+TEST_F(ControllerSessionExchange, RespawnedSessionTakesUpTheSetpointThatWasInForce) {
   EXPECT_TRUE(session->restore({0, {"x"}, {1850.0}, CommandMode::kOverride}));
   session->receive(sample(30));
   EXPECT_EQ(law->seen_setpoint[1], 1850.0);
   EXPECT_FALSE(session->restore({0, {"x"}, {1.0}, CommandMode::kOverride}));
 }
 
-TEST_F(ControllerSessionRing, StampsAreThoseOfThePlantNotOfThePlantInfo) {
+TEST_F(ControllerSessionExchange, StampsAreThoseOfThePlantNotOfThePlantInfo) {
   Measurement m = sample(0);
   const std::int64_t t0 = 1700000000123456789;
   m.header.time_ns = t0;
@@ -163,7 +163,7 @@ TEST_F(ControllerSessionRing, StampsAreThoseOfThePlantNotOfThePlantInfo) {
   EXPECT_EQ(session->command({t0 + 3 * kSample, {"x"}, {1.0}, CommandMode::kOverride}), 3u);
 }
 
-TEST_F(ControllerSessionRing, FinalSampleHasTrackingButNoAction) {
+TEST_F(ControllerSessionExchange, FinalSampleHasTrackingButNoAction) {
   session->receive(sample(0));
   Measurement m = sample(1);
   m.final = true;
@@ -177,7 +177,7 @@ TEST_F(ControllerSessionRing, FinalSampleHasTrackingButNoAction) {
   EXPECT_EQ(law->steps, (Steps{0, 1}));
 }
 
-TEST_F(ControllerSessionRing, NotReadyWithoutTheModelItNeeds) {
+TEST_F(ControllerSessionExchange, NotReadyWithoutTheModelItNeeds) {
   law->needs_model = true;
   EXPECT_FALSE(session->ready());
   EXPECT_EQ(session->receive(sample(0)), Receipt::kNotReady);
@@ -193,7 +193,7 @@ TEST_F(ControllerSessionRing, NotReadyWithoutTheModelItNeeds) {
   EXPECT_EQ(session->resetReason(), "first sample is 0");
 }
 
-TEST_F(ControllerSessionRing, NewModelInARunGoesToTheControllerAndABadOneChangesNothing) {
+TEST_F(ControllerSessionExchange, NewModelInARunGoesToTheControllerAndABadOneChangesNothing) {
   session->receive(sample(0));
   TsModel model;
   model.name = "second";
@@ -205,7 +205,7 @@ TEST_F(ControllerSessionRing, NewModelInARunGoesToTheControllerAndABadOneChanges
   EXPECT_EQ(law->resets, Steps{0});  // the controller itself sees to a bumpless change
 }
 
-TEST_F(ControllerSessionRing, WhatTheOperatorAskedComesBackInAnotherSession) {
+TEST_F(ControllerSessionExchange, WhatTheOperatorAskedComesBackInAnotherSession) {
   session->receive(sample(0));
   session->command({0, {"x"}, {1900.0}, CommandMode::kOverride});
   session->command({kStart + 50 * kSample, {"s"}, {60.0}, CommandMode::kOverride});
@@ -213,14 +213,14 @@ TEST_F(ControllerSessionRing, WhatTheOperatorAskedComesBackInAnotherSession) {
   session->manual(true);
   session->manualInput(of({650.0}));
   session->receive(sample(1));
-  const OperatorWishes wishes = session->wishes();
+  const OperatorState operator_state = session->operator_state();
   FakeLaw* other_law = new FakeLaw;
   ControllerSession other(std::unique_ptr<Controller>(other_law), setpoints(), limits(),
                           of({570.0}), plant());
   TsModel model;
   model.name = "first";
   other.setModel(model);
-  other.restore(wishes);
+  other.restore(operator_state);
   ASSERT_EQ(other.receive(sample(2)), Receipt::kAnswered);
   EXPECT_EQ(other.answer().base.source, ActionSource::kManual);
   EXPECT_EQ(other.answer().base.input, of({650.0}));
@@ -228,12 +228,12 @@ TEST_F(ControllerSessionRing, WhatTheOperatorAskedComesBackInAnotherSession) {
   EXPECT_TRUE(other.setpoint().held());
   other.receive(sample(50));
   EXPECT_EQ(other.answer().tracking.setpoint, of({60.0, 1900.0}));
-  other.restore(OperatorWishes{});  // too late: it knows better
+  other.restore(OperatorState{});  // too late: it knows better
   other.receive(sample(51));
   EXPECT_TRUE(other.isManual());
 }
 
-TEST_F(ControllerSessionRing, OneThatDoesNotKnowWhatWasAskedHoldsUntilItIsReleased) {
+TEST_F(ControllerSessionExchange, OneThatDoesNotKnowWhatWasAskedHoldsUntilItIsReleased) {
   session->holdUntilReleased();
   session->receive(sample(7, 1, 612.0));
   EXPECT_EQ(session->answer().base.source, ActionSource::kHeld);
@@ -244,7 +244,7 @@ TEST_F(ControllerSessionRing, OneThatDoesNotKnowWhatWasAskedHoldsUntilItIsReleas
   EXPECT_EQ(session->resetReason(), "first sample is 7; released");
 }
 
-TEST_F(ControllerSessionRing, TheLawLooksOnWhileOthersHaveTheInput) {
+TEST_F(ControllerSessionExchange, TheLawLooksOnWhileOthersHaveTheInput) {
   Measurement unknown = sample(0);
   unknown.outputs[0] = kNaN;
   session->receive(unknown);  // never measured: nothing to look at
@@ -265,7 +265,7 @@ TEST_F(ControllerSessionRing, TheLawLooksOnWhileOthersHaveTheInput) {
   EXPECT_EQ(law->resets, (Steps{1, 4, 6}));
 }
 
-TEST_F(ControllerSessionRing, AnEarlierClockOfThePlantDoesNotStopIt) {
+TEST_F(ControllerSessionExchange, AnEarlierClockOfThePlantDoesNotStopIt) {
   session->announce(9);
   session->receive(sample(0, 9));
   session->announce(3);
@@ -274,7 +274,7 @@ TEST_F(ControllerSessionRing, AnEarlierClockOfThePlantDoesNotStopIt) {
   EXPECT_EQ(session->resetReason(), "new run");
 }
 
-TEST_F(ControllerSessionRing, OneMessageFromTheFarFutureDoesNotEndTheRun) {
+TEST_F(ControllerSessionExchange, OneMessageFromTheFarFutureDoesNotEndTheRun) {
   session->receive(sample(0));
   EXPECT_EQ(session->receive(sample(4000000000U)), Receipt::kDropped);
   EXPECT_EQ(session->receive(sample(1)), Receipt::kAnswered);

@@ -14,12 +14,12 @@ import xml.etree.ElementTree as xml
 HERE = pathlib.Path(__file__).resolve().parent
 TOP = HERE.parent.parent
 sys.path[:0] = [str(HERE.parent / "ros")]
-import ring  # noqa: E402
+import exchange  # noqa: E402
 
 
 def gtest(binary, tests):
     def meet():
-        done = subprocess.run([ring.program(binary), "--gtest_filter=" + tests], capture_output=True, text=True, check=False, cwd=TOP / "test")
+        done = subprocess.run([exchange.program(binary), "--gtest_filter=" + tests], capture_output=True, text=True, check=False, cwd=TOP / "test")
         return done.returncode == 0 and "[  PASSED  ] 0 tests" not in done.stdout
     return tests.replace(":", ", "), meet
 

@@ -8,7 +8,7 @@ from fmbpc.msg import ControlAction
 from fmbpc.srv import ManualInput
 from std_srvs.srv import SetBool, Trigger
 
-import ring
+import exchange
 from fault import Fault
 
 CONTROLLER, PLANT = "fmbpc_controller", "plant_simulator"
@@ -201,7 +201,7 @@ def steps(loop):
 
 def joins_without_state(loop):
     """A controller in the middle of the run that nobody tells what was asked: its actions go nowhere."""
-    loop.start(ring.program(CONTROLLER), "__name:=newcomer", "operator_kept:=nobody_keeps", "base_action:=nobody_hears",
+    loop.start(exchange.program(CONTROLLER), "__name:=newcomer", "operator_kept:=nobody_keeps", "base_action:=nobody_hears",
                "control_action:=nobody_hears", "predictive_action:=nobody_predicts")
 
 

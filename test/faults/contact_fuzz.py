@@ -18,7 +18,7 @@ import xmlrpc.client
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "ros")]
 import contacts  # noqa: E402
-import ring  # noqa: E402
+import exchange  # noqa: E402
 import rosgraph  # noqa: E402
 
 ME = "/contact_fuzz"
@@ -34,7 +34,7 @@ class Nodes:
 
     def __init__(self):
         self.folder = tempfile.mkdtemp(prefix="fmbpc_contacts_")
-        os.environ.update(ROS_MASTER_URI=f"http://localhost:{ring.free_port()}", ROS_HOME=self.folder)
+        os.environ.update(ROS_MASTER_URI=f"http://localhost:{exchange.free_port()}", ROS_HOME=self.folder)
         self.processes, self.master = {}, self.start("rosmaster", "--core", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1])
         try:
             self.begin()
@@ -43,15 +43,15 @@ class Nodes:
             raise
 
     def begin(self):
-        ring.wait_until(rosgraph.is_master_online, "the master")
+        exchange.wait_until(rosgraph.is_master_online, "the master")
         master = rosgraph.Master(ME)
         for space, (loop, sets, nodes) in LOOPS.items():
-            master.setParam(space + "/loop_text", ring.tool("resolve", loop, "--sets", sets).stdout)
+            master.setParam(space + "/loop_text", exchange.tool("resolve", loop, "--sets", sets).stdout)
             for node in nodes:
                 name = f"{space}/{node}"
-                self.processes[name] = self.start(os.path.join(NODES, node) if NODES else ring.program(node), "__ns:=" + (space or "/"))
+                self.processes[name] = self.start(os.path.join(NODES, node) if NODES else exchange.program(node), "__ns:=" + (space or "/"))
         for name in self.processes:
-            ring.wait_until(lambda n=name: self.known(n), f"{name} (see {self.folder})")
+            exchange.wait_until(lambda n=name: self.known(n), f"{name} (see {self.folder})")
         self.ports = {name: contacts.ports(master.lookupNode(name)) for name in self.processes}
 
     def known(self, name):

@@ -6,7 +6,7 @@ import signal
 import struct
 import subprocess
 
-import ring
+import exchange
 import wire
 from fault import Fault
 
@@ -20,7 +20,7 @@ class PlcBehindWire:
     RANGE, SHARE = 200.0, 100.0  # l/min, counts per l/min
 
     def __init__(self, folder):
-        self.port = ring.free_port()
+        self.port = exchange.free_port()
         self.log = os.path.join(folder, "plc.jsonl")
         self.process = subprocess.Popen(
             ["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(self.port), "--log", self.log],
@@ -198,21 +198,21 @@ def heal(loop):
 
 def second_gateway(loop):
     """A second launch of the same loop, on a master of its own, at the same PLC: refused in words."""
-    folder, port = os.path.join(os.path.dirname(loop.far.log), "second"), ring.free_port()
+    folder, port = os.path.join(os.path.dirname(loop.far.log), "second"), exchange.free_port()
     with open(folder + ".log", "w", encoding="utf-8") as log:
         loop.second = subprocess.Popen(
-            ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=cstr_modbus", f"out:={folder}",
+            exchange.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=cstr_modbus", f"out:={folder}",
                        f"set:=gateway.modbus.port={loop.far.wire.port} sampling.duration_h=0", "draw:=false", "sim_time:=false"]),
             env={**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}, stdout=log, stderr=log, start_new_session=True)
 
     def refused():
         with open(folder + ".log", encoding="utf-8", errors="replace") as file:
             return "the word of another master" in file.read()
-    ring.wait_until(refused, "the second gateway to be refused", 40.0)
+    exchange.wait_until(refused, "the second gateway to be refused", 40.0)
 
 
 def end_second(loop):
-    ring.end_launch(loop.second)
+    exchange.end_launch(loop.second)
 
 
 def end(loop):

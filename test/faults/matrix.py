@@ -120,12 +120,12 @@ class Launch:
 
 def stop(process):
     """As roslaunch does it."""
-    import ring
+    import exchange
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
-        if process and ring.runs(process):
+        if process and exchange.runs(process):
             os.kill(process, number)
             end = time.monotonic() + 15
-            while ring.runs(process) and time.monotonic() < end:
+            while exchange.runs(process) and time.monotonic() < end:
                 time.sleep(0.05)
 
 
@@ -234,9 +234,9 @@ def end_with_finally(*_):
 
 def child(arguments):
     """Runs faults [first, last) of a group in this process and prints a line of JSON for each."""
-    import ring
+    import exchange
     folder = tempfile.mkdtemp(prefix="fmbpc_faults_")
-    os.environ.update(ROS_MASTER_URI=f"http://localhost:{ring.free_port()}", ROS_HOME=os.path.join(folder, "home"))
+    os.environ.update(ROS_MASTER_URI=f"http://localhost:{exchange.free_port()}", ROS_HOME=os.path.join(folder, "home"))
     signal.signal(signal.SIGTERM, end_with_finally)
     launch = Launch(arguments.loop, arguments.pace, arguments.group, folder)
     faults = chosen(arguments, arguments.group)[arguments.first:]

@@ -10,7 +10,7 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "ros")]
-import ring  # noqa: E402
+import exchange  # noqa: E402
 import rosgraph  # noqa: E402
 
 PLANT, CONTROL, STRANGER, MASTER = "10.77.0.1", "10.77.0.2", "10.77.0.3", "http://10.77.0.1:11311"
@@ -29,15 +29,15 @@ class Hosts:
         os.environ.update({"ROS_MASTER_URI": MASTER, "ROS_IP": PLANT} if there else
                           {"ROS_MASTER_URI": "http://localhost:11311", "ROS_HOSTNAME": "localhost"}, ROS_HOME=self.folder)
         self.start([], "rosmaster", "--core", "-p", "11311")
-        ring.wait_until(lambda: rosgraph.is_master_online(), "the master")
-        text = ring.tool("resolve", "asp_case1_clp", "--sets", SETS).stdout
+        exchange.wait_until(lambda: rosgraph.is_master_online(), "the master")
+        text = exchange.tool("resolve", "asp_case1_clp", "--sets", SETS).stdout
         rosgraph.Master("/partition_setup").setParam("/loop_text", text)
         for node in ("plant_simulator", "loop_recorder"):
-            self.start([], ring.program(node))
+            self.start([], exchange.program(node))
         name = {"ROS_IP": ip} if ip else {"ROS_HOSTNAME": "localhost"}
         self.there = ["ip", "netns", "exec", OTHER, "env", "-u", "ROS_IP", *[f"{k}={v}" for k, v in name.items()]] if there else []
         for node in ("fuzzy_identifier", "fmbpc_controller", "clp_optimizer"):
-            self.start(self.there, ring.program(node))
+            self.start(self.there, exchange.program(node))
 
     def start(self, before, *command):
         log = open(os.path.join(self.folder, os.path.basename(command[0]) + ".log"), "w", encoding="utf-8")
@@ -50,7 +50,7 @@ class Hosts:
 
     def end(self):
         for process in reversed(self.processes):
-            ring.killed(process)
+            exchange.killed(process)
 
 
 def link(state):
@@ -93,7 +93,7 @@ class Partition(unittest.TestCase):
     def said(self, node, words, within):
         """Seconds until the log of a node holds the words."""
         start = time.monotonic()
-        ring.wait_until(lambda: words in self.hosts.log(node), f"'{words}' of {node}", within)
+        exchange.wait_until(lambda: words in self.hosts.log(node), f"'{words}' of {node}", within)
         return time.monotonic() - start
 
     def test_ten_seconds_without_a_link(self):
@@ -141,7 +141,7 @@ class Partition(unittest.TestCase):
         recorder.kill()
         recorder.wait()
         self.hosts.processes.remove(recorder)
-        self.hosts.start([], ring.program("loop_recorder"))
+        self.hosts.start([], exchange.program("loop_recorder"))
         controller = next(p for p in self.hosts.processes if "fmbpc_controller" in p.args[-1])
         time.sleep(max(0.0, start + 15.0 - time.monotonic()))
         cable(True)

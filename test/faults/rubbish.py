@@ -1,4 +1,4 @@
-"""The loop takes messages of the ring from anyone (loop.publishers: []), and gets wrong ones: steps far ahead, other runs,
+"""The loop takes messages of the exchange from anyone (loop.publishers: []), and gets wrong ones: steps far ahead, other runs,
 NaN, wrong sizes, answers of an impostor, bursts. What the plant keeps sending wins."""
 import math
 

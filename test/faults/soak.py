@@ -22,7 +22,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "ros")]
-import ring  # noqa: E402
+import exchange  # noqa: E402
 
 import rosgraph  # noqa: E402
 import rospy  # noqa: E402
@@ -107,7 +107,7 @@ class Soak:
 
     def run(self, injections, seconds):
         """Injects until the run is over, or for so many seconds."""
-        ring.wait_until(lambda: self.latest is not None and self.info is not None and self.latest.step > 0,
+        exchange.wait_until(lambda: self.latest is not None and self.info is not None and self.latest.step > 0,
                         "the run", 600.0)
         done, looked = 0, -1
         while self.latest.word != "finished" and time.monotonic() - self.started < seconds:
@@ -178,16 +178,16 @@ def main():
     parser.add_argument("--out", default=str(HERE.parent.parent / "build" / "soak"))
     arguments = parser.parse_args()
     os.makedirs(arguments.out, exist_ok=True)
-    port = ring.free_port()
+    port = exchange.free_port()
     os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
     with open(os.path.join(arguments.out, "launch.log"), "w", encoding="utf-8") as log:
         launch = subprocess.Popen(
-            ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=" + LOOP, "pace:=lockstep", "respawn:=true",
+            exchange.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=" + LOOP, "pace:=lockstep", "respawn:=true",
                        "keep:=true", f"set:=sampling.duration_h={arguments.samples * TS_H!r} disturbance.source=constant "
                        "actuator.move_upper.q_r=40", "out:=" + arguments.out, "draw:=false", "sim_time:=false"]),
             stdout=log, stderr=log, start_new_session=True)
     try:
-        ring.wait_until(rosgraph.is_master_online, "the master", 600.0)
+        exchange.wait_until(rosgraph.is_master_online, "the master", 600.0)
         rospy.init_node("soak", disable_signals=True, disable_rosout=True)
         soak = Soak(arguments.samples, arguments.seed)
         done = soak.run(arguments.injections, 3600.0 * arguments.hours)
@@ -196,7 +196,7 @@ def main():
             launch.wait(600)
         summary = os.path.join(arguments.out, "summary.json")
         begun = time.time() - (time.monotonic() - soak.started)
-        ring.wait_until(lambda: os.path.exists(summary) and os.path.getmtime(summary) > begun, "the record", 600.0)
+        exchange.wait_until(lambda: os.path.exists(summary) and os.path.getmtime(summary) > begun, "the record", 600.0)
         time.sleep(1.0)
         finishing = soak.peak("loop_recorder") - soak.recorder_peak if launch.poll() is None else 0
     finally:

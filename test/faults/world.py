@@ -4,7 +4,7 @@ import signal
 import subprocess
 import time
 
-import ring
+import exchange
 from fault import Fault
 
 CONTROLLER, PLANT, RECORDER = "fmbpc_controller", "plant_simulator", "loop_recorder"
@@ -44,7 +44,7 @@ def room(loop):
 
 
 def second(executable, name, *arguments):
-    return lambda loop: loop.start(ring.program(executable), f"__name:={name}", *arguments)
+    return lambda loop: loop.start(exchange.program(executable), f"__name:={name}", *arguments)
 
 
 def end(loop):

@@ -4,7 +4,7 @@ namespace fpc::fuzz {
 
 const std::vector<NamedTarget>& targets() {
   static const std::vector<NamedTarget> all{
-      {"message", message, true}, {"ring", ring, true}, {"bag", bag, true}};
+      {"message", message, true}, {"exchange", exchange, true}, {"bag", bag, true}};
   return all;
 }
 

@@ -19,8 +19,9 @@ void csvTable(const std::string& bytes);       ///< read in three formats; resam
 void qp(const std::string& bytes);             ///< solved, or infeasible with a certificate
 // With ROS:
 void message(const std::string& bytes);  ///< read; if it can be, it comes back the same
-void ring(const std::string& bytes);  ///< a run with messages lost, late and changed: it ends well
-void bag(const std::string& bytes);   ///< read as a table
+void exchange(
+    const std::string& bytes);       ///< a run with messages lost, late and changed: it ends well
+void bag(const std::string& bytes);  ///< read as a table
 
 struct NamedTarget {
   const char* name;  ///< folder of its corpus

@@ -50,7 +50,7 @@ TEST(Simulation, DefaultOutputsAreThoseOfThePlant) {
   EXPECT_EQ(simulation.measurement().outputs, Eigen::Vector2d(200.0, 2000.0));
 }
 
-// The ring, exactly: u(k) and d(k) act on [t_k, t_k + Ts); measurement k shows y(k), d(k) and
+// The exchange, exactly: u(k) and d(k) act on [t_k, t_k + Ts); measurement k shows y(k), d(k) and
 // u(k-1).
 TEST(Simulation, EachSampleIsOneIntegrationWithItsInputAndDisturbance) {
   SimulationParams p = sludgeParams(10);

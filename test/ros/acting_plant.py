@@ -5,21 +5,21 @@ import rospy
 from fmbpc.msg import ControlAction, LoopState, Measurement, NodeReady, PlantInfo, Tracking
 from rosgraph_msgs.msg import Log
 
-import ring
+import exchange
 
 
 class ActingPlant(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         # The plant in the other namespace never starts: it is there to introduce itself.
-        cls.info = ring.Listener("reference/plant_info", PlantInfo).wait()
+        cls.info = exchange.Listener("reference/plant_info", PlantInfo).wait()
         cls.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
-        cls.pub = ring.publisher("measurement", Measurement, "/fmbpc_controller")
-        cls.actions = ring.Listener("control_action", ControlAction)
-        cls.tracking = ring.Listener("tracking", Tracking)
-        cls.log = ring.Listener("/rosout", Log, "/fmbpc_controller")
-        cls.status = ring.NodeStatus("fmbpc_controller")
-        cls.ready = ring.Listener("ready", NodeReady, "/fmbpc_controller")
+        cls.pub = exchange.publisher("measurement", Measurement, "/fmbpc_controller")
+        cls.actions = exchange.Listener("control_action", ControlAction)
+        cls.tracking = exchange.Listener("tracking", Tracking)
+        cls.log = exchange.Listener("/rosout", Log, "/fmbpc_controller")
+        cls.status = exchange.NodeStatus("fmbpc_controller")
+        cls.ready = exchange.Listener("ready", NodeReady, "/fmbpc_controller")
 
     def setUp(self):
         self.new_run()
@@ -31,7 +31,7 @@ class ActingPlant(unittest.TestCase):
             listener.clear()
         self.applied = [570.0]
         self.sent = -1
-        ring.wait_until(lambda: self.answered(0), "an answer to sample 0")
+        exchange.wait_until(lambda: self.answered(0), "an answer to sample 0")
 
     def answered(self, step):
         """plant_info and measurement travel apart: send again, as a plant does."""
@@ -44,12 +44,12 @@ class ActingPlant(unittest.TestCase):
 
     def wait_for_state(self, step, fits):
         """Meanwhile the sample is sent again: who gets no measurement is stalled."""
-        state = ring.Listener("loop_state", LoopState, "/fmbpc_controller")
+        state = exchange.Listener("loop_state", LoopState, "/fmbpc_controller")
 
         def said():
             self.send(step)
             return any(fits(m) for m in list(state.messages))
-        ring.wait_until(said, "the controller to say it")
+        exchange.wait_until(said, "the controller to say it")
 
     def message(self, step, run_id=None, outputs=(200.0, 2000.0), final=False, quality=()):
         msg = Measurement(run_id=self.info.run_id if run_id is None else run_id, step=step, outputs=outputs,

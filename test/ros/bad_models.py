@@ -13,7 +13,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from fmbpc.msg import FuzzyModel, Measurement
 from std_msgs.msg import String
 
-import ring
+import exchange
 
 
 def spoiled(good):
@@ -48,23 +48,23 @@ def spoiled(good):
 class BadModels(unittest.TestCase):
     def test_each_is_refused_and_the_loop_goes_on_with_the_old_one(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
-        recorded, status = ring.Listener("recorded", String), ring.NodeStatus("fmbpc_controller")
-        good = ring.Listener("fuzzy_model", FuzzyModel, "/fuzzy_identifier").wait(lambda m: m.name == "FM_1")
-        publisher = ring.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller")
-        ring.Listener("measurement", Measurement).wait(lambda m: m.step >= 5)
+        recorded, status = exchange.Listener("recorded", String), exchange.NodeStatus("fmbpc_controller")
+        good = exchange.Listener("fuzzy_model", FuzzyModel, "/fuzzy_identifier").wait(lambda m: m.name == "FM_1")
+        publisher = exchange.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller")
+        exchange.Listener("measurement", Measurement).wait(lambda m: m.step >= 5)
         for count, (model, words) in enumerate(spoiled(good), 1):
             publisher.publish(model)
             # Counters are of now, the words change with hysteresis: both must come to this model.
-            said = status.wait(lambda s, n=count, w=words: ring.values(s).get("refused: fuzzy_model") == str(n) and
-                               ring.values(s)["code"] == "model_refused" and w in s.message)
+            said = status.wait(lambda s, n=count, w=words: exchange.values(s).get("refused: fuzzy_model") == str(n) and
+                               exchange.values(s)["code"] == "model_refused" and w in s.message)
             self.assertEqual(DiagnosticStatus.WARN, said.level)
-            self.assertEqual(("FM_1", "1"), (ring.values(said)["model"], ring.values(said)["models taken"]))
+            self.assertEqual(("FM_1", "1"), (exchange.values(said)["model"], exchange.values(said)["models taken"]))
         folder = recorded.wait().data
-        self.assertEqual({"input": 0, "move": 0, "output": 0}, ring.summary(folder)["violations"])
+        self.assertEqual({"input": 0, "move": 0, "output": 0}, exchange.summary(folder)["violations"])
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process(loop, reference, sets)
-            ring.assert_same_run(self, folder, reference, beyond="model_refused")
-        said = ring.summary(folder)["events"]
+            exchange.run_in_process(loop, reference, sets)
+            exchange.assert_same_run(self, folder, reference, beyond="model_refused")
+        said = exchange.summary(folder)["events"]
         self.assertIn("model_refused", [e["code"] for e in said], said)
 
 

@@ -13,7 +13,7 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-import ring
+import exchange
 
 T0_S = 1
 # topic, type, name, value, time [h]
@@ -24,7 +24,7 @@ TYPED = [("setpoint", "fmbpc/Setpoint", "S_NH5", 0.6, 6), ("disturbance", "fmbpc
 def rostopic(topic, kind, name, value, time_h):
     """As a person types it, for a time of the plant; ends once the message is latched long enough."""
     text = f"{{header: {{stamp: {{secs: {T0_S + 3600 * time_h}}}}}, name: [{name}], value: [{value}], mode: 1}}"
-    return subprocess.Popen(ring.tied(["rostopic", "pub", "-1", topic, kind, text]), stdout=subprocess.DEVNULL)
+    return subprocess.Popen(exchange.tied(["rostopic", "pub", "-1", topic, kind, text]), stdout=subprocess.DEVNULL)
 
 
 def key(topic):
@@ -34,8 +34,8 @@ def key(topic):
 
 class Bsm1(unittest.TestCase):
     def test_typed_commands_act_and_the_run_is_that_of_one_process(self):
-        log, recorded = ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator"), ring.Listener("recorded", String)
-        frames = ring.Listener("/tf_static", TFMessage)
+        log, recorded = exchange.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator"), exchange.Listener("recorded", String)
+        frames = exchange.Listener("/tf_static", TFMessage)
         parents = {t.child_frame_id: t.header.frame_id for t in frames.wait().transforms}
         for tank in range(1, 6):
             self.assertEqual("plant", parents[f"tank_{tank}"])
@@ -45,7 +45,7 @@ class Bsm1(unittest.TestCase):
 
         typed = [rostopic(*command) for command in TYPED]
         for node, words, count in (("/fmbpc_controller", ": setpoint of", 1), ("/plant_simulator", ": disturbance of", 2)):
-            ring.wait_until(lambda n=node, w=words, c=count:
+            exchange.wait_until(lambda n=node, w=words, c=count:
                             sum(m.name == n and w in m.msg for m in list(log.messages)) == c, f"{node} to take all")
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
         ready.publish(node=rospy.get_name())
@@ -53,10 +53,10 @@ class Bsm1(unittest.TestCase):
         for process in typed:
             process.wait(timeout=60)
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process("bsm1_own_fmbpc_clp", reference, rospy.get_param("~set").split() +
+            exchange.run_in_process("bsm1_own_fmbpc_clp", reference, rospy.get_param("~set").split() +
                                 [key("setpoint"), key("disturbance")])
-            ring.assert_same_run(self, folder, reference)
-        summary = ring.summary(folder)
+            exchange.assert_same_run(self, folder, reference)
+        summary = exchange.summary(folder)
         self.assertEqual(96, summary["steps"])
         self.assertEqual({"input": 0, "move": 0}, {k: summary["violations"][k] for k in ("input", "move")})
 

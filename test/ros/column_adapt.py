@@ -10,7 +10,7 @@ from fmbpc.msg import ControlAction, Disturbance, Measurement, Signal
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import SetBool, Trigger
 
-import ring
+import exchange
 
 OVERRIDE, RELEASE = 1, 3
 NOMINAL, JUMPED, RATIO_UPPER, LIMIT, SAMPLES = 12.8, 15.36, 2.0, 2.0, 900
@@ -29,24 +29,24 @@ class ColumnAdapt(unittest.TestCase):
 
     def test_freeze_release_gain_jump_and_nonsense(self):
         self.at = 0
-        self.gains = ring.Listener("signal/gain_in_use_y_D_L", Signal)
-        actions, measurements = ring.Listener("control_action", ControlAction), ring.Listener("measurement", Measurement)
+        self.gains = exchange.Listener("signal/gain_in_use_y_D_L", Signal)
+        actions, measurements = exchange.Listener("control_action", ControlAction), exchange.Listener("measurement", Measurement)
         pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         self.step = rospy.ServiceProxy("plant_simulator/step", Trigger, persistent=True)
         adapt = rospy.ServiceProxy("fmbpc_controller/adapt", SetBool)
         for service in (pause, adapt):
-            service.wait_for_service(ring.PATIENCE)
-        disturbance = ring.publisher("disturbance", Disturbance, "/plant_simulator")
+            service.wait_for_service(exchange.PATIENCE)
+        disturbance = exchange.publisher("disturbance", Disturbance, "/plant_simulator")
         self.assertTrue(pause(True).success)
         self.assertEqual("frozen", adapt(False).message)
-        ring.begin()
+        exchange.begin()
         measurements.wait(lambda m: m.step == 0)
 
-        log = ring.Listener("/rosout", Log, "/plant_simulator")
+        log = exchange.Listener("/rosout", Log, "/plant_simulator")
 
         def tell(name, mode, value=None):
             disturbance.publish(Disturbance(name=[name], value=[] if value is None else [value], mode=mode))
-            ring.wait_until(lambda: any(m.name == "/plant_simulator" and name in m.msg for m in list(log.messages)),
+            exchange.wait_until(lambda: any(m.name == "/plant_simulator" and name in m.msg for m in list(log.messages)),
                             f"the plant to take {name}")
             log.clear()
 

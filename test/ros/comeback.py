@@ -11,14 +11,14 @@ import rostest
 from fmbpc.msg import LoopState, OperatorState, Tracking
 from std_srvs.srv import SetBool
 
-import ring
+import exchange
 
 PLANT, CONTROLLER, OPTIMIZER = "/plant_simulator", "/fmbpc_controller", "/clp_optimizer"
 
 
 class Comeback(unittest.TestCase):
     def setUp(self):
-        self.states = ring.Listener("loop_state", LoopState, PLANT)
+        self.states = exchange.Listener("loop_state", LoopState, PLANT)
         self.summary(LoopState.AUTOMATIC)
 
     def summary(self, mode, words=""):
@@ -26,21 +26,21 @@ class Comeback(unittest.TestCase):
         return self.states.wait(lambda s: s.summary and s.mode == mode and words in s.reason)
 
     def kill(self, node):
-        os.kill(ring.pid(node), signal.SIGKILL)
+        os.kill(exchange.pid(node), signal.SIGKILL)
 
     def test_1_manual_asked_of_a_controller_that_came_back_stays(self):
-        manual, kept = rospy.ServiceProxy("fmbpc_controller/manual", SetBool), ring.Listener("operator_kept", OperatorState)
-        tracking = ring.Listener("tracking", Tracking, CONTROLLER)
+        manual, kept = rospy.ServiceProxy("fmbpc_controller/manual", SetBool), exchange.Listener("operator_kept", OperatorState)
+        tracking = exchange.Listener("tracking", Tracking, CONTROLLER)
         tracking.clear()
         self.kill(CONTROLLER)
 
         def asked():
             try:
-                manual.wait_for_service(ring.PATIENCE)
+                manual.wait_for_service(exchange.PATIENCE)
                 return manual(True).success
             except rospy.ServiceException:  # the one that was killed is still registered
                 return False
-        ring.wait_until(asked, "manual")
+        exchange.wait_until(asked, "manual")
         again = tracking.wait()  # the sample that the one before it had answered
         self.assertEqual(0, again.step)
         kept.wait(lambda m: m.manual and m.node == CONTROLLER)

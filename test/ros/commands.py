@@ -11,7 +11,7 @@ from fmbpc.msg import CommandEffect, Disturbance, Setpoint
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
-import ring
+import exchange
 
 T0_S, SAMPLE_TIME_H = 1, 0.2
 OVERRIDE, OFFSET, RELEASE = 1, 2, 3
@@ -40,26 +40,26 @@ def steps(commands):
 
 class Commands(unittest.TestCase):
     def test_commands_by_topic_act_as_those_of_the_loop_file(self):
-        log, recorded = ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator"), ring.Listener("recorded", String)
-        effects = {kind: ring.Listener(kind, CommandEffect) for kind in ("setpoint_effect", "disturbance_effect")}
-        active = ring.Listener("setpoint_active", Setpoint)
-        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
-        disturbance = ring.publisher("disturbance", Disturbance, "/plant_simulator")
+        log, recorded = exchange.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator"), exchange.Listener("recorded", String)
+        effects = {kind: exchange.Listener(kind, CommandEffect) for kind in ("setpoint_effect", "disturbance_effect")}
+        active = exchange.Listener("setpoint_active", Setpoint)
+        setpoint = exchange.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        disturbance = exchange.publisher("disturbance", Disturbance, "/plant_simulator")
         for command in SETPOINTS:
             setpoint.publish(message(Setpoint, *command))
         for command in DISTURBANCES:
             disturbance.publish(message(Disturbance, *command))
         for node, words, count in (("/fmbpc_controller", ": setpoint of", len(SETPOINTS)),
                                    ("/plant_simulator", ": disturbance of", len(DISTURBANCES))):
-            ring.wait_until(lambda n=node, w=words, c=count:
+            exchange.wait_until(lambda n=node, w=words, c=count:
                             sum(m.name == n and w in m.msg for m in list(log.messages)) == c, f"{node} to take all")
-        ring.begin()
+        exchange.begin()
 
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process(rospy.get_param("~loop"), reference, rospy.get_param("~set").split() + [
+            exchange.run_in_process(rospy.get_param("~loop"), reference, rospy.get_param("~set").split() + [
                 "setpoint.commands=" + key(SETPOINTS), "disturbance.commands=" + key(DISTURBANCES)])
-            ring.assert_same_run(self, folder, reference)
+            exchange.assert_same_run(self, folder, reference)
         for topic, commands in (("setpoint_effect", SETPOINTS), ("disturbance_effect", DISTURBANCES)):
             effects[topic].wait(lambda m, last=commands[-1]: m.step == steps([last])[0][1])
             self.assertEqual([(m.name[0], m.step) for m in effects[topic].messages], steps(commands))

@@ -14,7 +14,7 @@ import rostest
 import yaml
 from fmbpc.msg import LoopState, Measurement
 
-import ring
+import exchange
 from modbus import LOWER, UPPER, Plc
 
 LOOP = {"extends": "cstr_modbus", "title": "Reactor behind a PLC, PI",
@@ -30,15 +30,15 @@ class Commission(unittest.TestCase):
         cls.loop, cls.brief = (os.path.join(cls.folder, name) for name in ("reactor.yaml", "brief.yaml"))
         for file, content in ((cls.loop, LOOP), (cls.brief, BRIEF)):
             pathlib.Path(file).write_text(yaml.safe_dump(content), encoding="utf-8")
-        cls.plc = Plc(ring.free_port())
-        cls.addClassCleanup(lambda: ring.killed(cls.plc.process))
+        cls.plc = Plc(exchange.free_port())
+        cls.addClassCleanup(lambda: exchange.killed(cls.plc.process))
         sets = f"gateway.modbus.port={cls.plc.port} sampling.duration_h=0 setpoint.schedule=[]"
         cls.launch = subprocess.Popen(
-            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", f"loop:={cls.loop}", f"set:={sets}", "draw:=false", "keep:=true",
+            exchange.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", f"loop:={cls.loop}", f"set:={sets}", "draw:=false", "keep:=true",
                        "sim_time:=false", "respawn:=true", f"out:={cls.folder}/out"]), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        cls.addClassCleanup(ring.end_launch, cls.launch)
-        cls.states = ring.Listener("loop_state", LoopState, "/plant_gateway")
-        cls.measurements = ring.Listener("measurement", Measurement)
+        cls.addClassCleanup(exchange.end_launch, cls.launch)
+        cls.states = exchange.Listener("loop_state", LoopState, "/plant_gateway")
+        cls.measurements = exchange.Listener("measurement", Measurement)
         cls.states.wait(lambda s: s.summary and s.mode == LoopState.AUTOMATIC)
 
     def words(self, until):
@@ -47,13 +47,13 @@ class Commission(unittest.TestCase):
     def kill_in(self, stage):
         """Begins up to this stage, kills the controller in it. What the command says."""
         words = self.words(stage)
-        command = subprocess.Popen(ring.tied([ring.program(words[0]), *words[1:]]), text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        command = subprocess.Popen(exchange.tied([exchange.program(words[0]), *words[1:]]), text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         for line in command.stderr:
             if line.startswith(stage + ":"):
                 break
         else:
             self.fail(f"stage {stage} has not begun")
-        os.kill(ring.pid("/fmbpc_controller"), signal.SIGKILL)
+        os.kill(exchange.pid("/fmbpc_controller"), signal.SIGKILL)
         rest = command.stderr.read()
         self.assertEqual(1, command.wait(60), rest)
         self.measurements.clear()
@@ -63,7 +63,7 @@ class Commission(unittest.TestCase):
 
     def finish(self, stage):
         words = self.words(stage)
-        done = subprocess.run([ring.program(words[0]), *words[1:], "--json"], capture_output=True, text=True, timeout=300, check=False)
+        done = subprocess.run([exchange.program(words[0]), *words[1:], "--json"], capture_output=True, text=True, timeout=300, check=False)
         self.assertEqual(0, done.returncode, done.stderr)
         return json.loads(done.stdout)
 
@@ -93,7 +93,7 @@ class Commission(unittest.TestCase):
         bad = os.path.join(self.folder, "bad.yaml")
         pathlib.Path(bad).write_text(yaml.safe_dump({**BRIEF, "limits": {"nobody": [0, 1]}}), encoding="utf-8")
         words = [bad if word == self.brief else word for word in self.words("test")]
-        done = subprocess.run([ring.program(words[0]), *words[1:]], capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run([exchange.program(words[0]), *words[1:]], capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(1, done.returncode)
         self.assertIn("nobody", done.stderr)
 

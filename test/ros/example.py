@@ -17,15 +17,15 @@ import rostest
 from fmbpc.msg import LoopState, Measurement
 from std_msgs.msg import Bool, Float64, String
 
-import ring
+import exchange
 
 
 class Example(unittest.TestCase):
     def test_the_tank_follows_its_setpoints_inside_its_limits(self):
-        efforts = ring.Listener("tank/control_effort", Float64, "/plant_gateway")
-        states = ring.Listener("loop_state", LoopState, "/plant_gateway")
-        measurements, recorded = ring.Listener("measurement", Measurement), ring.Listener("recorded", String)
-        liar = ring.publisher("tank/state", Float64, "/plant_gateway")
+        efforts = exchange.Listener("tank/control_effort", Float64, "/plant_gateway")
+        states = exchange.Listener("loop_state", LoopState, "/plant_gateway")
+        measurements, recorded = exchange.Listener("measurement", Measurement), exchange.Listener("recorded", String)
+        liar = exchange.publisher("tank/state", Float64, "/plant_gateway")
         liar.publish(math.nan)  # a lie among the truth
         measurements.wait(lambda m: math.isfinite(m.outputs[0]))
 
@@ -33,32 +33,32 @@ class Example(unittest.TestCase):
             liar.publish(3.9)
             return any(s.summary and s.mode == LoopState.DEGRADED and
                        "/tank/state has two publishers: /example_plant counts" in s.reason for s in list(states.messages))
-        ring.wait_until(said, "the second publisher to be named")
+        exchange.wait_until(said, "the second publisher to be named")
         counts = {"refused: enable from /example", "refused: setpoint from /example"}
-        enable, level = (ring.publisher(f"tank/{name}", kind, "/plant_gateway")
+        enable, level = (exchange.publisher(f"tank/{name}", kind, "/plant_gateway")
                          for name, kind in (("pid_enable", Bool), ("setpoint", Float64)))
         enable.publish(False)
         level.publish(3.0)
         stranger = subprocess.Popen(["rostopic", "pub", "-r", "10", "/tank/state", "std_msgs/Float64", "3.9"],
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(stranger.kill)
-        status = ring.NodeStatus("plant_gateway")
-        status.wait(lambda s: all(int(ring.values(s).get(key, 0)) > 0 for key in counts))
-        status.wait(lambda s: any(key.startswith("refused: tags from /rostopic") for key in ring.values(s)))
+        status = exchange.NodeStatus("plant_gateway")
+        status.wait(lambda s: all(int(exchange.values(s).get(key, 0)) > 0 for key in counts))
+        status.wait(lambda s: any(key.startswith("refused: tags from /rostopic") for key in exchange.values(s)))
         stranger.kill()
-        other = ring.publisher("tank/control_effort", Float64, "/plant_gateway")
+        other = exchange.publisher("tank/control_effort", Float64, "/plant_gateway")
 
         def seen():
             other.publish(efforts.messages[-1])
             return any(s.summary and s.mode == LoopState.DEGRADED and
                        "/tank/control_effort is published by /example as well" in s.reason for s in list(states.messages))
-        ring.wait_until(seen, "the stranger that commands the tank to be named")
+        exchange.wait_until(seen, "the stranger that commands the tank to be named")
         folder = recorded.wait().data
-        summary = ring.summary(folder)
+        summary = exchange.summary(folder)
         nodes = ("/fmbpc_controller", "/loop_recorder", "/plant_gateway")
         listeners = rosgraph.Master(rospy.get_name()).getSystemState()[1]
         for node in nodes:
-            own = {topic for topic, _ in ring.slave(node).getSubscriptions(rospy.get_name())[2]}
+            own = {topic for topic, _ in exchange.slave(node).getSubscriptions(rospy.get_name())[2]}
             self.assertEqual(own, {topic for topic, names in listeners if node in names}, node)
         self.assertEqual((240, True), (summary["steps"], summary["complete"]))
         self.assertEqual({"input": 0, "move": 0, "output": 0}, summary["violations"])

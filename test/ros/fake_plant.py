@@ -12,7 +12,7 @@ from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import SetBool
 
-import ring
+import exchange
 from acting_plant import ActingPlant
 
 BASE, HELD, MANUAL = ControlAction.BASE, ControlAction.HELD, ControlAction.MANUAL
@@ -60,7 +60,7 @@ class FakePlant(ActingPlant):
         other.run_id += 500
         before = self.status.counts().get("refused: plant_info", 0)
         self.info_pub.publish(other)
-        self.status.wait(lambda s: int(ring.values(s).get("refused: plant_info", 0)) > before)
+        self.status.wait(lambda s: int(exchange.values(s).get("refused: plant_info", 0)) > before)
         self.answer(1)
         self.info_pub.publish(self.info)
 
@@ -136,7 +136,7 @@ class FakePlant(ActingPlant):
         self.assertEqual((MANUAL, self.applied), (action.source, list(action.input)))
         self.assertTrue(by_hand([700.0]).success)
         self.assertEqual((700.0,), self.answer(3).input)
-        before = int(ring.values(self.status.wait(lambda s: True)).get("refused: manual_input", 0))
+        before = int(exchange.values(self.status.wait(lambda s: True)).get("refused: manual_input", 0))
         for refused in ([], [1.0, 2.0], [math.nan]):
             reply = by_hand(refused)
             self.assertEqual((False, True), (reply.success, "manual input" in reply.message))
@@ -146,7 +146,7 @@ class FakePlant(ActingPlant):
         self.assertEqual((self.info.inputs[0].upper,), self.answer(4).input)
         self.assertEqual([("input_clamped", "q_r"), ("command_refused", "")], self.events(4)[:2])
         self.wait_for_state(4, lambda s: (s.mode, s.code) == (LoopState.MANUAL, "input_clamped"))
-        self.status.wait(lambda s: ring.values(s).get("refused: manual_input") == str(before + 3))
+        self.status.wait(lambda s: exchange.values(s).get("refused: manual_input") == str(before + 3))
         self.assertEqual("", by_hand([650.0]).message)
         self.answer(5)
         self.assertEqual([], self.events(5))
@@ -171,14 +171,14 @@ class FakePlant(ActingPlant):
     def test_a_model_that_is_refused_degrades_the_controller_for_a_while(self):
         before = self.status.counts().get("refused: fuzzy_model", 0)
         self.answer(1)
-        ring.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller").publish(FuzzyModel(name="empty"))
+        exchange.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller").publish(FuzzyModel(name="empty"))
         self.wait_for_state(1, lambda s: (s.mode, s.code) == (LoopState.DEGRADED, "model_refused"))
         self.wait_for_state(1, lambda s: (s.mode, s.code) == (LoopState.AUTOMATIC, ""))
         self.assertEqual(before + 1, self.status.counts()["refused: fuzzy_model"])
 
     def test_a_setpoint_without_a_stamp_acts_at_the_next_sample(self):
-        effects = ring.Listener("setpoint_effect", CommandEffect)
-        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        effects = exchange.Listener("setpoint_effect", CommandEffect)
+        setpoint = exchange.publisher("setpoint", Setpoint, "/fmbpc_controller")
         self.answer(1)
         setpoint.publish(name=["x"], value=[1950.0], mode=Setpoint.OVERRIDE)
         self.log.wait(lambda m: "setpoint of x from sample 2 on" in m.msg)
@@ -187,12 +187,12 @@ class FakePlant(ActingPlant):
         self.assertEqual((55.0, 1950.0), now.setpoint)
         effect = effects.wait()
         self.assertEqual((2, self.info.run_id, ["x"]), (effect.step, effect.run_id, effect.name))
-        before = int(ring.values(self.status.wait(lambda s: True)).get("refused: setpoint", 0))
+        before = int(exchange.values(self.status.wait(lambda s: True)).get("refused: setpoint", 0))
         for wrong in (Setpoint(name=["x"], value=[1.0], mode=0), Setpoint(name=["x"], value=[1.0], mode=4),
                       Setpoint(name=["nobody"], value=[1.0], mode=1), Setpoint(name=["x"], value=[], mode=1),
                       Setpoint(name=["x"], value=[math.nan], mode=1)):
             setpoint.publish(wrong)
-        self.status.wait(lambda s: ring.values(s).get("refused: setpoint") == str(before + 5))
+        self.status.wait(lambda s: exchange.values(s).get("refused: setpoint") == str(before + 5))
         setpoint.publish(name=["x"], value=[], mode=Setpoint.RELEASE)
         self.log.wait(lambda m: "setpoint of x from sample 3 on" in m.msg)
         self.answer(3)
@@ -200,8 +200,8 @@ class FakePlant(ActingPlant):
         self.assertEqual((55.0, 1800.0), now.setpoint)
 
     def test_a_setpoint_that_is_refused_is_answered_and_changes_nothing(self):
-        effects = ring.Listener("setpoint_effect", CommandEffect)
-        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        effects = exchange.Listener("setpoint_effect", CommandEffect)
+        setpoint = exchange.publisher("setpoint", Setpoint, "/fmbpc_controller")
         self.answer(1)
         for number, (name, value) in enumerate((("x", 20000.0), ("x", -1.0), ("nobody", 1.0)), 1):
             message = Setpoint(name=[name], value=[value], mode=Setpoint.OVERRIDE)
@@ -215,7 +215,7 @@ class FakePlant(ActingPlant):
         self.assertEqual((55.0, 1800.0), now.setpoint)
 
     def test_a_setpoint_beyond_its_limits_is_clamped_and_said(self):
-        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        setpoint = exchange.publisher("setpoint", Setpoint, "/fmbpc_controller")
         setpoint.publish(name=["x"], value=[3000.0], mode=Setpoint.OVERRIDE)
         self.log.wait(lambda m: "setpoint of x from sample 1 on" in m.msg)
         self.answer(1)
@@ -223,7 +223,7 @@ class FakePlant(ActingPlant):
         self.log.wait(lambda m: m.level == Log.WARN and "setpoint_clamped" in m.msg)
         self.wait_for_state(1, lambda s: (s.mode, s.code) == (LoopState.DEGRADED, "setpoint_clamped") and
                             ("setpoint_clamped", "x", 1, 1) in [(e.code, e.signal, e.first, e.count) for e in s.events])
-        self.status.wait(lambda s: ring.values(s).get("event setpoint_clamped of x") == "1")
+        self.status.wait(lambda s: exchange.values(s).get("event setpoint_clamped of x") == "1")
         setpoint.publish(name=["x"], value=[], mode=Setpoint.RELEASE)
         self.log.wait(lambda m: "setpoint of x from sample 2 on" in m.msg)
         self.answer(2)

@@ -8,7 +8,7 @@ import rostest
 from fmbpc.msg import Measurement, PlantState, Recorded
 from std_msgs.msg import String
 
-import ring
+import exchange
 from acting_plant import ActingPlant
 
 
@@ -19,26 +19,26 @@ class FinalSample(ActingPlant):
         cls.info.run_id += 10 ** 6  # of no other test
 
     def test_a_final_sample_of_another_node_than_the_plant_ends_no_record(self):
-        status, recorded = ring.NodeStatus("loop_recorder"), ring.Listener("recorded", String, "/loop_recorder")
-        states, got = ring.publisher("plant_state", PlantState, "/loop_recorder"), ring.Listener("sample_recorded", Recorded)
+        status, recorded = exchange.NodeStatus("loop_recorder"), exchange.Listener("recorded", String, "/loop_recorder")
+        states, got = exchange.publisher("plant_state", PlantState, "/loop_recorder"), exchange.Listener("sample_recorded", Recorded)
 
         def record(step):
             def held():
                 states.publish(PlantState(run_id=self.info.run_id, step=step, state=[0.0] * 6, outputs=[200.0, 2000.0]))
                 return any((m.run_id, m.step) == (self.info.run_id, step) for m in list(got.messages))
-            ring.wait_until(held, f"sample {step} on record")
-        ring.publisher("measurement", Measurement, "/loop_recorder")
+            exchange.wait_until(held, f"sample {step} on record")
+        exchange.publisher("measurement", Measurement, "/loop_recorder")
         self.answer(1)
         record(1)
         before = status.counts().get("refused: measurement", 0)
         forged = f"{{run_id: {self.info.run_id}, step: 2, final: true, outputs: [1, 2], disturbances: [1, 2], input_applied: [0]}}"
-        stranger = subprocess.Popen(ring.tied(["rostopic", "pub", "-r", "20", "/measurement", "fmbpc/Measurement", forged]))
-        self.addCleanup(ring.killed, stranger)
+        stranger = subprocess.Popen(exchange.tied(["rostopic", "pub", "-r", "20", "/measurement", "fmbpc/Measurement", forged]))
+        self.addCleanup(exchange.killed, stranger)
         states.publish(PlantState(run_id=self.info.run_id, step=2, state=[0.0] * 6, outputs=[200.0, 2000.0]))
-        status.wait(lambda s: int(ring.values(s).get("refused: measurement", 0)) > before + 2)
+        status.wait(lambda s: int(exchange.values(s).get("refused: measurement", 0)) > before + 2)
         self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))  # the controller listens to anyone
         self.assertEqual([], recorded.messages)
-        ring.killed(stranger)
+        exchange.killed(stranger)
         self.send(3)
         record(3)
         self.send(4, final=True)

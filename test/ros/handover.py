@@ -11,12 +11,12 @@ import rospy
 import rostest
 from fmbpc.msg import Tracking
 
-import ring
+import exchange
 
 
 class Handover(unittest.TestCase):
     def tool(self, *words, code=0):
-        done = ring.tool(*words, check=False)
+        done = exchange.tool(*words, check=False)
         self.assertEqual(code, done.returncode, done.stdout + done.stderr)
         return done.stdout if code == 0 else done.stderr
 
@@ -28,9 +28,9 @@ class Handover(unittest.TestCase):
         return json.loads(self.tool(*words, "--json"))
 
     def test_the_way_there_and_back(self):
-        self.tracking = ring.Listener("tracking", Tracking, connected=False)
-        rospy.wait_for_service("fmbpc_controller/candidate", timeout=ring.PATIENCE)
-        ring.begin()
+        self.tracking = exchange.Listener("tracking", Tracking, connected=False)
+        rospy.wait_for_service("fmbpc_controller/candidate", timeout=exchange.PATIENCE)
+        exchange.begin()
         self.tracking.wait()
         self.assertEqual("watched", self.state("shadow")["state"])
         self.tool("handover", code=1)

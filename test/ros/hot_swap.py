@@ -16,7 +16,7 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
-import ring
+import exchange
 
 
 def rows(folder):
@@ -32,25 +32,25 @@ def ise(run, first, path):
 class HotSwap(unittest.TestCase):
     def identified(self):
         """The model of the experiment, which has run to its end."""
-        ring.Listener("experiment/measurement", Measurement).wait(lambda m: m.final)
+        exchange.Listener("experiment/measurement", Measurement).wait(lambda m: m.final)
         client = actionlib.SimpleActionClient("experiment/fuzzy_identifier/identify", IdentifyModelAction)
         client.wait_for_server()
-        models = ring.Listener("experiment/fuzzy_model", FuzzyModel)
-        progress = ring.Listener("experiment/fuzzy_identifier/identify/feedback", IdentifyModelActionFeedback)
+        models = exchange.Listener("experiment/fuzzy_model", FuzzyModel)
+        progress = exchange.Listener("experiment/fuzzy_identifier/identify/feedback", IdentifyModelActionFeedback)
         client.send_goal(IdentifyModelGoal(publish=True))
-        state, result = ring.action_end(client, patience=180)
+        state, result = exchange.action_end(client, patience=180)
         self.assertEqual((GoalStatus.SUCCEEDED, True), (state, result.ok), result.message)
         progress.wait(lambda m: m.feedback.stage == "done")
         print("held out, free run:", dict(zip(result.outputs, result.free_run_vaf)), "linear", result.linear_free_run_vaf)
         return models.wait()
 
     def test_the_own_model_takes_over_and_tracks_better(self):
-        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, "/fmbpc_controller")
-        measurements = ring.Listener("measurement", Measurement)
+        recorded, log = exchange.Listener("recorded", String), exchange.Listener("/rosout", Log, "/fmbpc_controller")
+        measurements = exchange.Listener("measurement", Measurement)
         model = self.identified()
         pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
-        publisher = ring.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller")
-        ring.begin()  # now the loop may begin
+        publisher = exchange.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller")
+        exchange.begin()  # now the loop may begin
         measurements.wait(lambda m: m.step >= 60)
         pause(True)
         publisher.publish(model)
@@ -58,12 +58,12 @@ class HotSwap(unittest.TestCase):
         swap = measurements.messages[-1].step
         pause(False)
         folder = recorded.wait().data
-        summary = ring.summary(folder)
+        summary = exchange.summary(folder)
         self.assertTrue(summary["complete"])
         self.assertEqual((0, 0), (summary["violations"]["input"], summary["violations"]["move"]))
         own = rows(folder)
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process(rospy.get_param("~loop"), reference, [])
+            exchange.run_in_process(rospy.get_param("~loop"), reference, [])
             fm_1 = rows(reference)
         self.assertEqual(fm_1[:swap], own[:swap])  # the same run until then
         at = next(k for k, (a, b) in enumerate(zip(fm_1, own)) if a != b)

@@ -14,7 +14,7 @@ from fmbpc.srv import ManualInput
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
-import ring
+import exchange
 
 ALLOWED = {(0.0, 0.0, 1.0), (0.01, 0.0, 1.0), (0.02, 0.0, 1.0), (0.05, 0.0, 1.0), (0.1, 0.0, 1.0), (1.0, 0.0, 1.0),
            (1.0, 1.0, 0.0)}
@@ -28,20 +28,20 @@ def column(folder, name):
 
 
 def service(name, kind, node="fmbpc_controller"):
-    rospy.wait_for_service(f"/{node}/{name}", ring.PATIENCE)
+    rospy.wait_for_service(f"/{node}/{name}", exchange.PATIENCE)
     return rospy.ServiceProxy(f"/{node}/{name}", kind)
 
 
 class HybridHold(unittest.TestCase):
     def test_hold_resume_and_manual(self):
-        recorded, actions = ring.Listener("recorded", String), ring.Listener("control_action", ControlAction)
+        recorded, actions = exchange.Listener("recorded", String), exchange.Listener("control_action", ControlAction)
         hold, manual, manual_input = service("hold", SetBool), service("manual", SetBool), service("manual_input",
                                                                                                    ManualInput)
         pause, step = service("pause", SetBool, "plant_simulator"), service("step", Trigger, "plant_simulator")
-        measurements = ring.Listener("measurement", Measurement)
+        measurements = exchange.Listener("measurement", Measurement)
         pause(True)
         self.assertEqual("recipe held", hold(True).message)
-        ring.begin()
+        exchange.begin()
         measurements.wait()
         for k in range(30):  # one by one, so that the recipe is held for 30 samples on any machine
             actions.wait(lambda a, k=k: a.step == k)
@@ -60,10 +60,10 @@ class HybridHold(unittest.TestCase):
         manual(False)
 
         folder = recorded.wait().data
-        self.assertTrue(ring.summary(folder)["complete"])
+        self.assertTrue(exchange.summary(folder)["complete"])
         self.assertLessEqual({tuple(a.input) for a in actions.messages}, ALLOWED)
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process(rospy.get_param("~loop"), reference, [])
+            exchange.run_in_process(rospy.get_param("~loop"), reference, [])
             planned = column(reference, "T_setpoint")
         followed = column(folder, "T_setpoint")
         self.assertEqual(361, len(followed))

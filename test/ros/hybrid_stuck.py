@@ -11,7 +11,7 @@ from fmbpc.msg import Disturbance
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
-import ring
+import exchange
 
 STUCK_H, FREE_H = 0.25, 0.75
 SAMPLE_S, T0_S = 10, 1
@@ -25,25 +25,25 @@ def message(time_h, mode, values):
 
 class HybridStuck(unittest.TestCase):
     def test_a_stuck_valve_is_survived_and_reported(self):
-        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator")
-        disturbance = ring.publisher("disturbance", Disturbance, "/plant_simulator")
+        recorded, log = exchange.Listener("recorded", String), exchange.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator")
+        disturbance = exchange.publisher("disturbance", Disturbance, "/plant_simulator")
         disturbance.publish(message(STUCK_H, Disturbance.OVERRIDE, [0.0]))
         disturbance.publish(message(FREE_H, Disturbance.RELEASE, []))
-        ring.wait_until(lambda: sum("disturbance of" in m.msg for m in list(log.messages)) == 2, "the plant to take both")
-        ring.begin()
+        exchange.wait_until(lambda: sum("disturbance of" in m.msg for m in list(log.messages)) == 2, "the plant to take both")
+        exchange.begin()
         log.wait(lambda m: m.name == "/fmbpc_controller" and m.level == Log.WARN and
                  "kM is not where it was sent" in m.msg)
         folder = recorded.wait().data
         commands = (f"[{{time_h: {STUCK_H}, name: input/kM, value: 0}}, "
                     f"{{time_h: {FREE_H}, name: input/kM, mode: release}}]")
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process("batch_fuzzy_eq45", reference,
+            exchange.run_in_process("batch_fuzzy_eq45", reference,
                                 rospy.get_param("~set").split() + ["disturbance.commands=" + commands])
-            ring.assert_same_run(self, folder, reference)
-        summary = ring.summary(folder)
+            exchange.assert_same_run(self, folder, reference)
+        summary = exchange.summary(folder)
         self.assertTrue(summary["complete"])
         self.assertEqual(0, summary["violations"]["input"])
-        rows = [line.split(",") for line in ring.trajectory(folder)]
+        rows = [line.split(",") for line in exchange.trajectory(folder)]
         t = [i for i, name in enumerate(rows[0]) if name.startswith("T[")][0]
         at = [float(row[t]) for row in rows[1:]]
         stuck, free = round(STUCK_H * 3600 / SAMPLE_S), round(FREE_H * 3600 / SAMPLE_S)

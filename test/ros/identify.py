@@ -10,7 +10,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from fmbpc.msg import FuzzyModel, IdentifyModelAction, IdentifyModelActionFeedback, IdentifyModelGoal, Measurement
 
-import ring
+import exchange
 
 ACTION = "fuzzy_identifier/identify"
 # Clusterings that go on for minutes, unless they are cancelled.
@@ -30,13 +30,13 @@ partition: {max_iterations: 100000, tolerance: 1e-14, restarts: 1000}
 class Identify(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.status = ring.NodeStatus("fuzzy_identifier")
-        cls.models = ring.Listener("fuzzy_model", FuzzyModel)
-        ring.Listener("measurement", Measurement).wait(lambda m: m.step >= 900)
+        cls.status = exchange.NodeStatus("fuzzy_identifier")
+        cls.models = exchange.Listener("fuzzy_model", FuzzyModel)
+        exchange.Listener("measurement", Measurement).wait(lambda m: m.step >= 900)
         cls.client = actionlib.SimpleActionClient(ACTION, IdentifyModelAction)
         cls.client.wait_for_server()
         # The client forgets what comes after the result; topics have no order.
-        cls.progress = ring.Listener(ACTION + "/feedback", IdentifyModelActionFeedback)
+        cls.progress = exchange.Listener(ACTION + "/feedback", IdentifyModelActionFeedback)
 
     def send(self, client=None, **goal):
         feedback = []
@@ -44,7 +44,7 @@ class Identify(unittest.TestCase):
         return feedback
 
     def finish(self, client=None):
-        return ring.action_end(client or self.client)
+        return exchange.action_end(client or self.client)
 
     def test_a_goal_brings_progress_and_a_model_with_honest_figures(self):
         models = len(self.models.messages)
@@ -68,8 +68,8 @@ class Identify(unittest.TestCase):
         self.assertEqual(["s", "x"], [o.name for o in model.outputs])
         self.assertIn("Identified from the running plant activated_sludge", model.source)
         path = os.path.join(rospy.get_param("fuzzy_identifier/out"), "model.yaml")
-        self.assertIn("asp_d", ring.tool("model", path).stdout)
-        self.status.wait(lambda s: ring.values(s)["models published"] == "1" and "published" in s.message)
+        self.assertIn("asp_d", exchange.tool("model", path).stdout)
+        self.status.wait(lambda s: exchange.values(s)["models published"] == "1" and "published" in s.message)
 
     def finish_after(self, **goal):
         self.send(**goal)
@@ -77,7 +77,7 @@ class Identify(unittest.TestCase):
 
     def test_cancel_ends_an_identification_at_once_and_the_next_goal_is_served(self):
         feedback = self.send(structure=ENDLESS, publish=True)
-        ring.wait_until(lambda: any(f.iteration > 0 for f in feedback), "an iteration of the clustering")
+        exchange.wait_until(lambda: any(f.iteration > 0 for f in feedback), "an iteration of the clustering")
         self.status.wait(lambda s: s.message.startswith("identifying: s clusters"))
         other = actionlib.SimpleActionClient(ACTION, IdentifyModelAction)
         other.wait_for_server()
@@ -101,11 +101,11 @@ class Identify(unittest.TestCase):
             got, result = self.finish_after(**goal)
             self.assertEqual((state, False), (got, result.ok), result.message)
             self.assertIn(words, result.message)
-        said = self.status.wait(lambda s: ring.values(s).get("code") == "identification_failed")  # of the last one, the loop goes on
+        said = self.status.wait(lambda s: exchange.values(s).get("code") == "identification_failed")  # of the last one, the loop goes on
         self.assertIn("rows", said.message)
 
     def test_diagnostics_say_what_was_collected(self):
-        values = ring.values(self.status.wait())
+        values = exchange.values(self.status.wait())
         self.assertGreaterEqual(int(values["samples collected"]), 900)
         self.assertEqual(("0", "0", "1"), (values["samples missing"], values["samples incomplete"], values["runs"]))
 

@@ -11,7 +11,7 @@ from fmbpc.msg import Measurement
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
-import ring
+import exchange
 
 
 class Interrupted(unittest.TestCase):
@@ -20,15 +20,15 @@ class Interrupted(unittest.TestCase):
         interrupt()
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process("asp_case1_clp", reference, rospy.get_param("~set").split())
-            ring.assert_same_run(self, folder, reference)
+            exchange.run_in_process("asp_case1_clp", reference, rospy.get_param("~set").split())
+            exchange.assert_same_run(self, folder, reference)
 
     def test_a_run_that_was_paused_stepped_and_reset_is_the_run_of_the_loop_file(self):
-        recorded, measurements = ring.Listener("recorded", String), ring.Listener("measurement", Measurement)
+        recorded, measurements = exchange.Listener("recorded", String), exchange.Listener("measurement", Measurement)
         pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         step = rospy.ServiceProxy("plant_simulator/step", Trigger)
         reset = rospy.ServiceProxy("plant_simulator/reset", Trigger)
-        ring.begin()
+        exchange.begin()
         first = measurements.wait(lambda m: m.step == 5).run_id
 
         def interrupt():

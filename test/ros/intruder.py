@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Somebody publishes on every topic of the ring while a loop with optimizer runs: the run stays the same, bit for bit. With
+"""Somebody publishes on every topic of the exchange while a loop with optimizer runs: the run stays the same, bit for bit. With
 loop.publishers as they are (~closed) valid answers of an impostor, forged plants and steps to come as well as rubbish; in a loop
 that listens to anyone rubbish, which every receiver must refuse for what it is."""
 import copy
@@ -17,7 +17,7 @@ from fmbpc.msg import (ControlAction, Disturbance, FuzzyModel, LoopState, Matrix
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
-import ring
+import exchange
 
 FAR = 2 ** 63  # a run that no plant has announced
 LIE = "a lie"
@@ -108,12 +108,12 @@ CLOSED = (("plant_simulator", ("refused: control_action from /intruder", "refuse
 class Intruder(unittest.TestCase):
     def test_rubbish_on_every_topic_changes_nothing_and_is_counted(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
-        recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray, *NODES)
-        measurements, states = ring.Listener("measurement", Measurement), ring.Listener("loop_state", LoopState, PLANT)
-        closed, info = rospy.get_param("~closed"), ring.Listener("plant_info", PlantInfo).wait()
-        publishers = {topic: ring.publisher(topic, kind, *RECEIVERS[topic]) for topic, kind in KINDS.items()}
-        ring.Listener("ready", NodeReady, "/fmbpc_controller").wait(lambda m: m.node == "/fmbpc_controller")
-        plant = ring.NodeStatus("plant_simulator")
+        recorded, diagnostics = exchange.Listener("recorded", String), exchange.Listener("/diagnostics", DiagnosticArray, *NODES)
+        measurements, states = exchange.Listener("measurement", Measurement), exchange.Listener("loop_state", LoopState, PLANT)
+        closed, info = rospy.get_param("~closed"), exchange.Listener("plant_info", PlantInfo).wait()
+        publishers = {topic: exchange.publisher(topic, kind, *RECEIVERS[topic]) for topic, kind in KINDS.items()}
+        exchange.Listener("ready", NodeReady, "/fmbpc_controller").wait(lambda m: m.node == "/fmbpc_controller")
+        plant = exchange.NodeStatus("plant_simulator")
 
         def genuine(message):  # what this test forges comes back to it
             return message._connection_header["callerid"] == "/plant_simulator"
@@ -121,11 +121,11 @@ class Intruder(unittest.TestCase):
         def disturb(now):
             for topic, message in itertools.chain(rubbish(now), impostors(now, info) if closed else ()):
                 publishers[topic].publish(message)
-        with ring.Frozen("/fmbpc_controller"):  # nobody else answers sample 0
-            ring.begin()
+        with exchange.Frozen("/fmbpc_controller"):  # nobody else answers sample 0
+            exchange.begin()
             disturb(measurements.wait(genuine))
             if not closed:
-                plant.wait(lambda s: int(ring.values(s).get("actions dropped: wrong size", 0)) > 0)
+                plant.wait(lambda s: int(exchange.values(s).get("actions dropped: wrong size", 0)) > 0)
         if closed:
             self.call_services()
         for step in itertools.count(1):
@@ -135,15 +135,15 @@ class Intruder(unittest.TestCase):
             disturb(now)
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process(loop, reference, sets)
-            ring.assert_same_run(self, folder, reference, beyond="command_refused")
-        said = [e["text"] for e in ring.summary(folder)["events"] if e["code"] == "command_refused"]
+            exchange.run_in_process(loop, reference, sets)
+            exchange.assert_same_run(self, folder, reference, beyond="command_refused")
+        said = [e["text"] for e in exchange.summary(folder)["events"] if e["code"] == "command_refused"]
         for name in ("nobody", "q_i"):  # on setpoint and on disturbance
             self.assertTrue(any(name in text for text in said), said)
         self.assertEqual([], [s.reason for s in states.messages if s.summary and LIE in s.reason])
         for node, keys in CLOSED if closed else OPEN:
-            diagnostics.wait(lambda m, n=node, k=keys: ring.diagnostics_of(m, n) is not None and all(
-                int(ring.values(ring.diagnostics_of(m, n)).get(key, 0)) > 0 for key in k))
+            diagnostics.wait(lambda m, n=node, k=keys: exchange.diagnostics_of(m, n) is not None and all(
+                int(exchange.values(exchange.diagnostics_of(m, n)).get(key, 0)) > 0 for key in k))
 
 
     def call_services(self):

@@ -14,17 +14,17 @@ import rosgraph
 import rostest
 
 import panel_page
-import ring
+import exchange
 
 
-PATIENT = 3 * ring.PATIENCE  # end_launch gives way to all others (os.nice)
+PATIENT = 3 * exchange.PATIENCE  # end_launch gives way to all others (os.nice)
 
 
 def roslaunch(*arguments):
-    port = ring.free_port()
+    port = exchange.free_port()
     environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
     environment.pop("DISPLAY", None)
-    done = subprocess.run(ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", *arguments]), env=environment,
+    done = subprocess.run(exchange.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", *arguments]), env=environment,
                           text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=150, check=False)
     return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
 
@@ -58,7 +58,7 @@ class LaunchFile(unittest.TestCase):
             self.assertEqual(list(range(50)), steps[topic], topic)
         self.assertLessEqual({"/signal/x", "/signal/x_setpoint", "/signal/x_reference", "/signal/q_r",
                               "/signal/q_r_perturbation"}, signals)
-        here, there = (ring.tool("identify", os.path.join(self.out, record), "asp_c", "--json").stdout
+        here, there = (exchange.tool("identify", os.path.join(self.out, record), "asp_c", "--json").stdout
                        for record in ("loop.bag", "trajectory.csv"))
         here, there = json.loads(here), json.loads(there)
         for part in ("identification", "rule_details", "rules"):
@@ -69,7 +69,7 @@ class LaunchFile(unittest.TestCase):
                                     ("/signal/q_r", 50), ("/signal/q_r_perturbation", 50)):
             with rosbag.Bag(os.path.join(self.out, "loop.bag")) as bag:
                 self.assertEqual(steps_wanted, len({m.header.stamp for _, m, _ in bag.read_messages(topic)}), topic)
-        replayed = json.loads(ring.tool("replay", os.path.join(self.out, "loop.bag"), "--json").stdout)
+        replayed = json.loads(exchange.tool("replay", os.path.join(self.out, "loop.bag"), "--json").stdout)
         self.assertEqual((True, 51, 50, 50), (replayed["equal"], replayed["measurements"],
                                               replayed["base_action"]["equal"], replayed["control_action"]["equal"]))
         self.pages_hold_the_same(self.out, os.path.join(self.out, "loop.bag"))
@@ -124,47 +124,47 @@ class LaunchFile(unittest.TestCase):
         self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
 
     def test_two_loops_started_at_the_same_moment_on_one_master_both_run(self):
-        port = ring.free_port()
+        port = exchange.free_port()
         environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
-        core = subprocess.Popen(ring.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, core)
+        core = subprocess.Popen(exchange.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(exchange.killed, core)
         launches = [subprocess.Popen(
-            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=" + loop, "ns:=/" + loop, "out:=" + os.path.join(self.out, loop),
+            exchange.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=" + loop, "ns:=/" + loop, "out:=" + os.path.join(self.out, loop),
                        "set:=sampling.duration_h=2", "pace:=lockstep", "draw:=false"]),
             env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for loop in ("asp_case1", "asp_case2")]
         for launch in launches:
-            self.addCleanup(ring.killed, launch)
+            self.addCleanup(exchange.killed, launch)
             launch.wait(60)
         for loop in ("asp_case1", "asp_case2"):
             with open(os.path.join(self.out, loop, "summary.json"), encoding="utf-8") as file:
                 self.assertTrue(json.load(file)["complete"], loop)
 
     def test_a_launcher_that_is_killed_is_said_and_its_nodes_end_with_the_run(self):
-        port = ring.free_port()
+        port = exchange.free_port()
         environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
-        core = subprocess.Popen(ring.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, core)
+        core = subprocess.Popen(exchange.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(exchange.killed, core)
         quiet = {"env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        launch = subprocess.Popen(ring.tied(
+        launch = subprocess.Popen(exchange.tied(
             ["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=asp_case1", "out:=" + self.out, "pace:=lockstep", "draw:=false",
              "set:=sampling.duration_h=20 loop.ready_timeout_s=600 loop.wait_for=[loop_recorder,fmbpc_controller,launch_file]"]), **quiet)
-        self.addCleanup(ring.killed, launch)
+        self.addCleanup(exchange.killed, launch)
         master = rosgraph.Master("/launch_file", environment["ROS_MASTER_URI"])
         nodes = ("/plant_simulator", "/fmbpc_controller", "/fuzzy_identifier", "/loop_recorder", "/end_launch")
-        ring.wait_until(lambda: known(master, *nodes), "the nodes", PATIENT)
-        processes = {node: ring.pid(node, master) for node in nodes}
+        exchange.wait_until(lambda: known(master, *nodes), "the nodes", PATIENT)
+        processes = {node: exchange.pid(node, master) for node in nodes}
         launch.kill()
         launch.wait()
         with tempfile.TemporaryFile("w+") as said:
-            listener = subprocess.Popen(ring.tied(["rostopic", "echo", "/loop_state/reason"]), **{**quiet, "stdout": said})
-            self.addCleanup(ring.killed, listener)
-            ring.wait_until(lambda: "roslaunch that started this node was killed" in os.pread(said.fileno(), 1 << 20, 0).decode(),
+            listener = subprocess.Popen(exchange.tied(["rostopic", "echo", "/loop_state/reason"]), **{**quiet, "stdout": said})
+            self.addCleanup(exchange.killed, listener)
+            exchange.wait_until(lambda: "roslaunch that started this node was killed" in os.pread(said.fileno(), 1 << 20, 0).decode(),
                             "the nodes to say it")
-        begins = subprocess.Popen(ring.tied(["rostopic", "pub", "/ready", "fmbpc/NodeReady", "{node: /launch_file}",
+        begins = subprocess.Popen(exchange.tied(["rostopic", "pub", "/ready", "fmbpc/NodeReady", "{node: /launch_file}",
                                              "__name:=launch_file"]), **quiet)  # the run itself, after all that
-        self.addCleanup(ring.killed, begins)
+        self.addCleanup(exchange.killed, begins)
         for node, process in processes.items():
-            ring.wait_until(lambda p=process: not ring.runs(p), node + " to end", PATIENT)
+            exchange.wait_until(lambda p=process: not exchange.runs(p), node + " to end", PATIENT)
         with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
             self.assertTrue(json.load(file)["complete"])
 

@@ -15,7 +15,7 @@ import rospy
 import rostest
 from fmbpc.msg import LoopState, Measurement, Setpoint, Tracking
 
-import ring
+import exchange
 import wire
 
 LONG = bool(os.environ.get("FMBPC_LONG_TESTS"))
@@ -88,7 +88,7 @@ class Plc:
 
     def start(self):
         command = ["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(self.port), "--log", self.log.name]
-        self.process = subprocess.Popen(ring.tied(command), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(exchange.tied(command), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def lines(self):
         with open(self.log.name, encoding="utf-8") as file:
@@ -98,21 +98,21 @@ class Plc:
 class Modbus(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.plc = Plc(ring.free_port())
-        cls.addClassCleanup(lambda: ring.killed(cls.plc.process))
+        cls.plc = Plc(exchange.free_port())
+        cls.addClassCleanup(lambda: exchange.killed(cls.plc.process))
         cls.wire = wire.Wire(cls.plc.port)
         sets = f"gateway.modbus.port={cls.wire.port} sampling.duration_h=0 setpoint.schedule=[]"
         cls.launch = subprocess.Popen(
-            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_modbus", f"set:={sets}", "draw:=false",
+            exchange.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_modbus", f"set:={sets}", "draw:=false",
                        "keep:=true", "sim_time:=false", "respawn:=true", f"out:={tempfile.mkdtemp()}"]),
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        cls.addClassCleanup(ring.end_launch, cls.launch)
-        cls.states = ring.Listener("loop_state", LoopState, "/plant_gateway")
-        cls.measurements = ring.Listener("measurement", Measurement)
+        cls.addClassCleanup(exchange.end_launch, cls.launch)
+        cls.states = exchange.Listener("loop_state", LoopState, "/plant_gateway")
+        cls.measurements = exchange.Listener("measurement", Measurement)
         cls.await_calm()
 
     @classmethod
-    def await_calm(cls, patience=ring.PATIENCE):
+    def await_calm(cls, patience=exchange.PATIENCE):
         cls.states.clear()
         cls.states.wait(lambda s: s.summary and s.mode == LoopState.AUTOMATIC, patience)
         cls.measurements.clear()
@@ -174,7 +174,7 @@ class Modbus(unittest.TestCase):
     def test_leadership_is_renewed_and_its_loss_is_said(self):
         def lost():
             return status.counts()["times that leadership was lost"]
-        status, port = ring.NodeStatus("plant_gateway"), self.plc.port
+        status, port = exchange.NodeStatus("plant_gateway"), self.plc.port
         # Each behind the gateway's own renewal: what is written between its look and its renewal is undone unseen.
         for renewal, write in (
                 (b"\5\0\0", lambda: wire.write_coil(port, 0, False)),
@@ -182,7 +182,7 @@ class Modbus(unittest.TestCase):
             before = lost()
             lines, _ = self.check(lambda r=renewal, w=write: self.wire.breaks(wire.Once(r, w)), self.wire.heals, 0.0, True)
             self.assertNotIn("another master is refused", [line.get("event") for line in lines])
-            ring.wait_until(lambda b=before: lost() > b, "the loss to be counted")
+            exchange.wait_until(lambda b=before: lost() > b, "the loss to be counted")
 
     def test_a_second_master_is_refused(self):
         lines, _ = self.check(lambda: wire.write_register(self.plc.port, 22, 4711), lambda: None, 1.0, False)
@@ -197,11 +197,11 @@ class Modbus(unittest.TestCase):
 
     def test_a_gateway_that_comes_back_goes_on_with_the_operators_setpoint(self):
         self.await_calm()
-        tracking = ring.Listener("tracking", Tracking)
-        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        tracking = exchange.Listener("tracking", Tracking)
+        setpoint = exchange.publisher("setpoint", Setpoint, "/fmbpc_controller")
         setpoint.publish(name=["CA"], value=[0.1], mode=Setpoint.OVERRIDE)
         before = tracking.wait(lambda t: t.setpoint[0] == 0.1)
-        os.kill(ring.pid("/plant_gateway"), signal.SIGKILL)
+        os.kill(exchange.pid("/plant_gateway"), signal.SIGKILL)
         after = tracking.wait(lambda t: t.run_id not in (0, before.run_id))
         later = tracking.wait(lambda t: t.run_id == after.run_id and t.step > after.step + 5)
         self.assertEqual([0.1, 0.1], [after.setpoint[0], later.setpoint[0]])

@@ -14,7 +14,7 @@ import rostest
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "faults"))
 import contacts
-import ring
+import exchange
 from launch_file import roslaunch
 
 
@@ -29,8 +29,8 @@ class Nodelets(unittest.TestCase):
                                "out:=" + over_topics)
         self.assertEqual(0, code, text)
         self.assertTrue(os.path.isfile(os.path.join(over_topics, "summary.json")), text)
-        ring.run_in_process(loop, in_process, (*sets, "loop.pace=lockstep"))
-        ring.assert_same_run(self, over_topics, in_process)
+        exchange.run_in_process(loop, in_process, (*sets, "loop.pace=lockstep"))
+        exchange.assert_same_run(self, over_topics, in_process)
         return text
 
     def test_a_law_with_its_optimizer(self):
@@ -41,13 +41,13 @@ class Nodelets(unittest.TestCase):
         self.equal("asp_identify")
 
     def test_one_thread_watches_the_master_for_all_and_strangers_end_no_process(self):
-        port = ring.free_port()
+        port = exchange.free_port()
         address = f"http://localhost:{port}"
         launch = subprocess.Popen(
-            ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=asp_case1_clp", "set:=sampling.duration_h=2",
+            exchange.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=asp_case1_clp", "set:=sampling.duration_h=2",
                        "pace:=lockstep", "nodelets:=true", "keep:=true", "draw:=false", "out:=" + self.out]),
             env={**os.environ, "ROS_MASTER_URI": address}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, launch)
+        self.addCleanup(exchange.killed, launch)
         master = rosgraph.Master("/nodelets_test", address)
 
         def serves(service):
@@ -56,13 +56,13 @@ class Nodelets(unittest.TestCase):
             except (rosgraph.MasterException, OSError):  # not yet
                 return False
         for service in ("/plant_simulator/pause", "/fmbpc_controller/manual"):
-            ring.wait_until(lambda name=service: serves(name), service)
-        self.assertEqual(1, ring.threads(ring.pid("/loop_manager", master)).count("master_watch"))
+            exchange.wait_until(lambda name=service: serves(name), service)
+        self.assertEqual(1, exchange.threads(exchange.pid("/loop_manager", master)).count("master_watch"))
         for node in ("/loop_manager", "/plant_simulator"):  # the second is the process that loads
-            process, ports = ring.pid(node, master), contacts.ports(master.lookupNode(node))
+            process, ports = exchange.pid(node, master), contacts.ports(master.lookupNode(node))
             for words, port, data in contacts.killers(node):
                 contacts.send(ports[port], data, answer=True)
-                self.assertTrue(ring.runs(process), f"{node}: {words}")
+                self.assertTrue(exchange.runs(process), f"{node}: {words}")
 
     def test_a_loop_that_is_wrong_ends_the_launch_in_words(self):
         code, text = roslaunch("loop:=asp_case1", "set:=model.file=nowhere.yaml", "nodelets:=true", "draw:=false",

@@ -10,15 +10,15 @@ import rostest
 from fmbpc.msg import FuzzyModel
 from std_msgs.msg import String
 
-import ring
+import exchange
 
 
 class Online(unittest.TestCase):
     def test_models_come_at_the_stated_steps_and_the_loop_goes_on(self):
-        models, recorded = ring.Listener("fuzzy_model", FuzzyModel), ring.Listener("recorded", String)
-        identifier, controller = ring.NodeStatus("fuzzy_identifier"), ring.NodeStatus("fmbpc_controller")
+        models, recorded = exchange.Listener("fuzzy_model", FuzzyModel), exchange.Listener("recorded", String)
+        identifier, controller = exchange.NodeStatus("fuzzy_identifier"), exchange.NodeStatus("fmbpc_controller")
         folder = recorded.wait().data
-        summary = ring.summary(folder)
+        summary = exchange.summary(folder)
         self.assertEqual((300, True), (summary["steps"], summary["complete"]))
         self.assertEqual((0, 0), (summary["violations"]["input"], summary["violations"]["move"]))
         counts = identifier.counts()
@@ -29,8 +29,8 @@ class Online(unittest.TestCase):
         learned = [int(found.group(1)) for m in models.messages
                    if (found := re.search(r"online from (\d+) samples", m.source))]
         self.assertTrue(all(n % 40 == 0 for n in learned), learned)  # published at steps 40, 80, ...
-        taken = controller.wait(lambda s: int(ring.values(s)["models taken"]) >= 1 + len(learned))
-        self.assertEqual("FM_1", ring.values(taken)["model"])
+        taken = controller.wait(lambda s: int(exchange.values(s)["models taken"]) >= 1 + len(learned))
+        self.assertEqual("FM_1", exchange.values(taken)["model"])
 
 
 if __name__ == "__main__":

@@ -11,16 +11,16 @@ import rostest
 from fmbpc.msg import CommandEffect, ControlAction, Measurement, Tracking
 from std_msgs.msg import String
 
-import ring
+import exchange
 
 
 class Operate(unittest.TestCase):
     def setUp(self):
-        self.measurement = ring.Listener("measurement", Measurement)
+        self.measurement = exchange.Listener("measurement", Measurement)
         self.measurement.wait(lambda m: m.step >= 3)
 
     def tool(self, *words, code=0):
-        done = ring.tool(*words, check=False)
+        done = exchange.tool(*words, check=False)
         self.assertEqual(code, done.returncode, done.stdout + done.stderr)
         return done.stdout if code == 0 else done.stderr
 
@@ -28,7 +28,7 @@ class Operate(unittest.TestCase):
         return int(re.search(r"since sample (\d+)", text).group(1))
 
     def test_a_setpoint_is_in_force_since_the_sample_that_is_said(self):
-        effects, tracking = ring.Listener("setpoint_effect", CommandEffect), ring.Listener("tracking", Tracking)
+        effects, tracking = exchange.Listener("setpoint_effect", CommandEffect), exchange.Listener("tracking", Tracking)
         text = self.tool("set", "x", "2000")
         self.assertIn("x: setpoint 2000 mg/l since sample", text)
         step = self.since(text)
@@ -39,7 +39,7 @@ class Operate(unittest.TestCase):
         self.assertIn("released since sample", self.tool("release", "x"))
 
     def test_what_is_refused_is_said_and_changes_nothing(self):
-        tracking = ring.Listener("tracking", Tracking)
+        tracking = exchange.Listener("tracking", Tracking)
         for words, reason in ((("set", "x", "20000"), "value of x: expected a number >= 0 and <= 10000"),
                               (("set", "nobody", "1"), "one of s, x"), (("disturb", "q_i", "1e9"), "value of q_i"),
                               (("manual", "nobody", "1"), "one of q_r"), (("set", "x", "many"), "x: expected a number"),
@@ -61,7 +61,7 @@ class Operate(unittest.TestCase):
         self.assertEqual(1300.0, self.measurement.wait(lambda m: m.step == step).disturbances[0])
 
     def test_the_hand_takes_and_gives_back(self):
-        action = ring.Listener("control_action", ControlAction)
+        action = exchange.Listener("control_action", ControlAction)
         text = self.tool("manual", "q_r", "900")
         step = self.since(text)
         self.assertIn("q_r: 900 m3/h", text)
@@ -73,7 +73,7 @@ class Operate(unittest.TestCase):
         self.assertNotEqual(ControlAction.MANUAL, action.wait(lambda a: a.step == step).source)
 
     def test_what_is_wrong_with_a_launch_is_its_last_line(self):
-        port = ring.free_port()
+        port = exchange.free_port()
         done = subprocess.run(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=nonsense"], check=False, text=True, timeout=60,
                               env={**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.assertEqual(1, done.returncode)
@@ -85,7 +85,7 @@ class Operate(unittest.TestCase):
         end.publish("recorded")
         self.assertIn("finished", self.tool("watch").splitlines()[-1])
         end.publish("the disk is full")
-        done = ring.tool("watch", check=False)
+        done = exchange.tool("watch", check=False)
         self.assertEqual(1, done.returncode)
         self.assertIn("ended: the disk is full", done.stdout.splitlines()[-1])
 

@@ -15,7 +15,7 @@ import rostest
 from fmbpc.msg import LoopState, Measurement, PlantInfo, Setpoint
 
 import panel_page
-import ring
+import exchange
 
 SOON = 2.0  # s of wall time
 ACTIVE = ("unacknowledged", "acknowledged")
@@ -30,7 +30,7 @@ class Alarms:
         self.answer.request("GET", "/stream")
         self.lines = self.answer.getresponse()
         threading.Thread(target=self.read, daemon=True).start()
-        ring.wait_until(lambda: self.events, "the list of events")
+        exchange.wait_until(lambda: self.events, "the list of events")
 
     def read(self):
         kind = b""
@@ -59,14 +59,14 @@ class Faults(unittest.TestCase):
         cls.info = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
         cls.true_info = rospy.Subscriber("plant_info_true", PlantInfo, cls.info.publish, tcp_nodelay=True)
         cls.true = rospy.Subscriber("measurement_true", Measurement, cls.pass_on, tcp_nodelay=True)
-        cls.setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
-        cls.states = ring.Listener("loop_state", LoopState, "/plant_simulator", "/fmbpc_controller")
+        cls.setpoint = exchange.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        cls.states = exchange.Listener("loop_state", LoopState, "/plant_simulator", "/fmbpc_controller")
         cls.reports = rospy.Subscriber("loop_state", LoopState, cls.report, tcp_nodelay=True)
-        heard = ring.Listener("measurement_true", Measurement)
+        heard = exchange.Listener("measurement_true", Measurement)
         heard.wait(lambda m: m.step >= 140)  # nothing is left of the start, and the noise of s is known
-        cls.panel = panel_page.PanelProcess(ring.free_port(), cls.folder.name)
+        cls.panel = panel_page.PanelProcess(exchange.free_port(), cls.folder.name)
         cls.alarms = Alarms(cls.panel.port)
-        ring.wait_until(lambda: cls.panel.get("/api/model", loop="/") is not None, "the panel to find the loop")
+        exchange.wait_until(lambda: cls.panel.get("/api/model", loop="/") is not None, "the panel to find the loop")
 
     @classmethod
     def tearDownClass(cls):
@@ -94,7 +94,7 @@ class Faults(unittest.TestCase):
 
     def is_one_alarm(self, code, signal, since):
         """since: when it began, or was reported; of its consequences nothing is said."""
-        ring.wait_until(lambda: (code, signal) in self.alarms.came, f"{code} {signal}, there is {self.alarms.active()}", 20.0)
+        exchange.wait_until(lambda: (code, signal) in self.alarms.came, f"{code} {signal}, there is {self.alarms.active()}", 20.0)
         self.assertLess(self.alarms.came[(code, signal)] - since(), SOON)
         time.sleep(2.0)  # while it lasts nothing comes or goes
         self.assertEqual({(code, signal)}, self.alarms.active() - self.before)
@@ -154,7 +154,7 @@ class Faults(unittest.TestCase):
         self.spoilt("signal_too_fast", "s", self.put("outputs", 0, lambda v: v + (60.0 if int(time.monotonic() * 5) % 2 else 0.0)))
 
     def frozen(self, node, signal):
-        with ring.Frozen(node) as fault:
+        with exchange.Frozen(node) as fault:
             self.is_one_alarm("node_silent", signal, lambda: fault.since)
         self.is_over()
 
@@ -186,7 +186,7 @@ class Faults(unittest.TestCase):
         self.asked("qp_not_solved", "", 1000.0, lambda: self.reported["qp_not_solved"])
 
     def test_13_all_of_them_have_gone_and_came_once(self):
-        ring.wait_until(lambda: not self.alarms.active(), f"the end of {self.alarms.active()}", 30.0)
+        exchange.wait_until(lambda: not self.alarms.active(), f"the end of {self.alarms.active()}", 30.0)
         self.assertEqual(self.shown, {(a["code"], a["signal"]): a["count"] for a in self.alarms.now})
         self.assertEqual({"returned"}, {a["state"] for a in self.alarms.now})
 

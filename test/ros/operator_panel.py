@@ -21,7 +21,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 import panel_page
-import ring
+import exchange
 
 PASSWORD = "correct horse"
 AWAY_S = 60 if os.environ.get("FMBPC_LONG_TESTS") else 6
@@ -111,8 +111,8 @@ class Panel(unittest.TestCase):
         cls.users = os.path.join(cls.folder.name, "users.json")
         for name, role in (("olga", "operate"), ("emil", "engineer")):
             subprocess.run([sys.executable, panel_page.SCRIPT, "--users", cls.users, "--add-user", name, role], input=PASSWORD + "\n", check=True, text=True, stdout=subprocess.DEVNULL)
-        cls.port = ring.free_port()
-        cls.line = Line(ring.free_port(), cls.port)
+        cls.port = exchange.free_port()
+        cls.line = Line(exchange.free_port(), cls.port)
         cls.panel = panel_page.PanelProcess(cls.port, cls.folder.name + "/data", f'_hosts:=["localhost:{cls.line.port}"]', users=cls.users)
         cls.page = panel_page.browser()
 
@@ -140,7 +140,7 @@ class Panel(unittest.TestCase):
             except StaleElementReferenceException:
                 return False
             return bool(found)
-        ring.wait_until(there, f"{what} {text} on the page", 30.0)
+        exchange.wait_until(there, f"{what} {text} on the page", 30.0)
         return found[0]
 
     def click(self, how, what, text=""):
@@ -174,7 +174,7 @@ class Panel(unittest.TestCase):
         self.click(By.CSS_SELECTOR, "a.tile", "Activated sludge")
         rows = self.see(By.ID, "outputs", "x [mg/l]")
         self.assertIn("good", rows.text)
-        ring.wait_until(lambda: len(self.page.find_elements(By.CSS_SELECTOR, ".chart canvas")) == 5, "five charts")
+        exchange.wait_until(lambda: len(self.page.find_elements(By.CSS_SELECTOR, ".chart canvas")) == 5, "five charts")
         for label in ("Manual", "Auto", "Hold schedule"):
             self.assertFalse(self.see(*self.button(label)).is_enabled())
         self.assertFalse(self.see(By.CSS_SELECTOR, "[data-key='set x']").is_enabled())
@@ -192,7 +192,7 @@ class Panel(unittest.TestCase):
 
     def test_2_a_setpoint_in_three_clicks_in_force_since_the_sample_that_is_said(self):
         self.login("olga")
-        effects, tracking = ring.Listener("setpoint_effect", CommandEffect), ring.Listener("tracking", Tracking)
+        effects, tracking = exchange.Listener("setpoint_effect", CommandEffect), exchange.Listener("tracking", Tracking)
         self.click(By.CSS_SELECTOR, "a.tile")
         self.type_into("set x", "2100")
         self.click(*self.button("Set"))
@@ -216,7 +216,7 @@ class Panel(unittest.TestCase):
 
     def test_3_by_hand_and_back_in_three_clicks(self):
         self.login("olga")
-        action = ring.Listener("control_action", ControlAction)
+        action = exchange.Listener("control_action", ControlAction)
         self.click(By.CSS_SELECTOR, "a.tile")
         self.click(*self.button("Manual"))
         step = int(self.said("manual since").split("since sample ")[1].split()[0])
@@ -279,7 +279,7 @@ class Panel(unittest.TestCase):
         self.login("emil")
         self.open("#/loop/%2Fa/model")
         field = self.see(By.CSS_SELECTOR, "input[aria-label='coincidence_steps']")
-        ring.wait_until(field.is_enabled, "the engineer's field")
+        exchange.wait_until(field.is_enabled, "the engineer's field")
         field.clear()
         field.send_keys("8")
         self.see(By.XPATH, "//tr[td='coincidence_steps']//button").click()
@@ -301,10 +301,10 @@ class Panel(unittest.TestCase):
             begin = time.monotonic()
             self.see(By.ID, "banner", "NO WORD from the plant")
             self.assertLess(time.monotonic() - begin, 3.0)  # of them 1 s of patience for a loaded machine
-            ring.wait_until(lambda: "away" in self.page.find_element(By.ID, "live").get_attribute("class"), "old values to look old")
+            exchange.wait_until(lambda: "away" in self.page.find_element(By.ID, "live").get_attribute("class"), "old values to look old")
         finally:
             os.kill(plant, signal.SIGCONT)
-        ring.wait_until(lambda: "NO WORD" not in self.page.find_element(By.ID, "banner").text, "the plant's word")
+        exchange.wait_until(lambda: "NO WORD" not in self.page.find_element(By.ID, "banner").text, "the plant's word")
         os.kill(self.panel.pid, signal.SIGSTOP)
         try:
             begin = time.monotonic()
@@ -312,7 +312,7 @@ class Panel(unittest.TestCase):
             self.assertLess(time.monotonic() - begin, 3.0)
         finally:
             os.kill(self.panel.pid, signal.SIGCONT)
-        ring.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
+        exchange.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
 
     @staticmethod
     def pid(node):
@@ -324,14 +324,14 @@ class Panel(unittest.TestCase):
         listed = self.alarm_keys()
         self.panel.kill()
         self.see(By.ID, "banner", "NO CONNECTION")
-        tracking = ring.Listener("tracking", Tracking)
+        tracking = exchange.Listener("tracking", Tracking)
         away = tracking.wait().step
         tracking.wait(lambda t: t.step > away + 20)  # samples that no panel saw
         self.panel.start()
-        ring.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
-        ring.wait_until(lambda: self.panel.holes("/a", ("x", "x_reference", "q_r"), 0, away + 20) == 0, "a trend without holes", 40.0)
+        exchange.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
+        exchange.wait_until(lambda: self.panel.holes("/a", ("x", "x_reference", "q_r"), 0, away + 20) == 0, "a trend without holes", 40.0)
         self.sees_no_hole(away + 20)
-        ring.wait_until(lambda: self.alarm_keys() >= listed, "the alarms of before")
+        exchange.wait_until(lambda: self.alarm_keys() >= listed, "the alarms of before")
 
     def sees_no_hole(self, until):
         self.click(By.XPATH, "//button[.='whole run']")
@@ -339,12 +339,12 @@ class Panel(unittest.TestCase):
         def whole():
             got = self.page.execute_script(HOLES)
             return got is not None and got[0] == 0 and got[1] > until and got[2] == 0
-        ring.wait_until(whole, "the whole trend in the browser", 40.0)
+        exchange.wait_until(whole, "the whole trend in the browser", 40.0)
 
     def test_9_a_browser_that_was_offline_lacks_nothing(self):
         self.page.get(f"http://localhost:{self.line.port}/#/loop/%2Fa")
         self.see(By.ID, "outputs", "x [mg/l]")
-        tracking, asked = ring.Listener("tracking", Tracking), ring.publisher("setpoint", Setpoint, "/a/fmbpc_controller")
+        tracking, asked = exchange.Listener("tracking", Tracking), exchange.publisher("setpoint", Setpoint, "/a/fmbpc_controller")
         came = self.clamped()
         other = http.client.HTTPConnection("localhost", int(self.port))  # somebody who hears it all meanwhile
         self.addCleanup(other.close)
@@ -355,14 +355,14 @@ class Panel(unittest.TestCase):
             self.see(By.ID, "banner", "NO CONNECTION")
             asked.publish(Setpoint(name=["x"], value=[9000.0], mode=Setpoint.OVERRIDE))
             away = tracking.wait().step
-            away = tracking.wait(lambda t: t.step > away + 10 * AWAY_S, AWAY_S + ring.PATIENCE).step
+            away = tracking.wait(lambda t: t.step > away + 10 * AWAY_S, AWAY_S + exchange.PATIENCE).step
             self.assertEqual(came, self.clamped())
             asked.publish(Setpoint(mode=Setpoint.RELEASE))
         finally:
             self.line.mend()
-        ring.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
+        exchange.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
         self.sees_no_hole(away)
-        ring.wait_until(lambda: self.clamped() == came + 1, "the journal's entry of meanwhile")
+        exchange.wait_until(lambda: self.clamped() == came + 1, "the journal's entry of meanwhile")
         self.assertIn("/a|setpoint_clamped|x", self.alarm_keys())
 
     def clamped(self):

@@ -17,9 +17,9 @@ import yaml
 from fmbpc.srv import LoopOrderRequest
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent))
-import ring
+import exchange
 
-PLUGINS = os.path.dirname(ring.program("fmbpc_tool"))
+PLUGINS = os.path.dirname(exchange.program("fmbpc_tool"))
 THROWS = {"plugins": ["throws"], "plant": {"type": "throwing"}, "sampling": {"sample_time_s": 1, "duration_h": 1},
           "controller": {"type": "pi", "loops": [{"input": "u", "output": "x", "kp": 0.1, "ki_per_h": 1}]}}
 
@@ -43,14 +43,14 @@ class Launch:
     """plant.launch on a master of its own; `before`: words before its command."""
 
     def __init__(self, test, plant, out, *arguments, before=()):
-        port = ring.free_port()
+        port = exchange.free_port()
         self.uri = f"http://localhost:{port}"
         environment = {**os.environ, "ROS_MASTER_URI": self.uri, "FMBPC_PLUGIN_PATH": PLUGINS}
         environment.pop("DISPLAY", None)
         self.process = subprocess.Popen(
-            ring.tied([*before, "roslaunch", "-p", port, "fmbpc", "plant.launch", "plant:=" + plant, "out:=" + out, *arguments]),
+            exchange.tied([*before, "roslaunch", "-p", port, "fmbpc", "plant.launch", "plant:=" + plant, "out:=" + out, *arguments]),
             env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        test.addCleanup(ring.killed, self.process)
+        test.addCleanup(exchange.killed, self.process)
         self.master = rosgraph.Master("/plant_loops_test", self.uri)
 
     def end(self):
@@ -75,11 +75,11 @@ class PlantLoops(unittest.TestCase):
         return file
 
     def in_process(self, plant, *sets):
-        ring.tool("run", "--plant", plant, "--no-plot", "--out", self.process, *[word for s in sets for word in ("--set", s)])
+        exchange.tool("run", "--plant", plant, "--no-plot", "--out", self.process, *[word for s in sets for word in ("--set", s)])
 
     def same(self, *loops):
         for loop in loops:
-            ring.assert_same_run(self, os.path.join(self.topics, loop), os.path.join(self.process, loop))
+            exchange.assert_same_run(self, os.path.join(self.topics, loop), os.path.join(self.process, loop))
 
     def shipped(self, name="jacketed_vessel", hours=6, **isolate):
         """A shipped plant in lockstep, some loops in a process of their own."""
@@ -122,8 +122,8 @@ class PlantLoops(unittest.TestCase):
             "full": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 200}}}})  # their names are those that start first
         launch = Launch(self, plant, self.topics, before=before)
         os.environ["ROS_MASTER_URI"] = launch.uri
-        ring.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "the isolated loop runs")
-        os.kill(ring.pid("/plant_host_apart", launch.master), signal.SIGKILL)
+        exchange.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "the isolated loop runs")
+        os.kill(exchange.pid("/plant_host_apart", launch.master), signal.SIGKILL)
         self.assertFalse(all(self.recorded(loop) for loop in good), "the others run")
         text = launch.end()[1]
         for words in ("loop apart: its process was ended: Killed", "thrown by the plugin", "full/journal.bin cannot be written: No space left on device"):
@@ -141,21 +141,21 @@ class PlantLoops(unittest.TestCase):
             "apart": {**ENDLESS, "isolate": True}, "full": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 1}}}})
         launch = Launch(self, plant, self.topics, "keep:=true")
         os.environ["ROS_MASTER_URI"] = launch.uri
-        ring.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "the isolated loop runs")
-        process = ring.pid("/plant_host_apart", launch.master)
+        exchange.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "the isolated loop runs")
+        process = exchange.pid("/plant_host_apart", launch.master)
         os.kill(process, signal.SIGKILL)
-        ring.wait_until(lambda: "killed" in self.state(launch)[1].lower(), "the plant says so")
+        exchange.wait_until(lambda: "killed" in self.state(launch)[1].lower(), "the plant says so")
         code, words = self.state(launch)
         self.assertEqual("failed", code, words)
         self.assertIn("full", words)
         self.order(launch, LoopOrderRequest.REPLACE, "apart")
-        ring.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "it runs again")
-        self.assertNotEqual(process, ring.pid("/plant_host_apart", launch.master))
+        exchange.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "it runs again")
+        self.assertNotEqual(process, exchange.pid("/plant_host_apart", launch.master))
         os.unlink(os.path.join(self.topics, "full"))
         self.order(launch, LoopOrderRequest.REPLACE, "full")
-        ring.wait_until(lambda: self.recorded("full"), "the record of the replaced loop")
+        exchange.wait_until(lambda: self.recorded("full"), "the record of the replaced loop")
         self.order(launch, LoopOrderRequest.STOP, "apart")
-        ring.wait_until(lambda: "stopped: apart" in self.state(launch)[1], "the plant says that it is stopped")
+        exchange.wait_until(lambda: "stopped: apart" in self.state(launch)[1], "the plant says that it is stopped")
         self.assertIn("success: False", self.order(launch, LoopOrderRequest.STOP, "nobody", good=False))
 
     @staticmethod
@@ -179,7 +179,7 @@ class PlantLoops(unittest.TestCase):
 
     def test_what_is_of_one_loop_is_refused(self):
         for option in (["--commands", "file.yaml"], ["--on-model"]):
-            done = ring.tool("run", "--plant", "four_tanks", *option, check=False)
+            done = exchange.tool("run", "--plant", "four_tanks", *option, check=False)
             self.assertNotEqual(0, done.returncode)
             self.assertIn(option[0], done.stderr)
 

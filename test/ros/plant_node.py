@@ -15,22 +15,22 @@ from rosgraph_msgs.msg import Clock, Log
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
-import ring
+import exchange
 
 
 class PlantNode(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.measurements = ring.Listener("measurement", Measurement)
-        cls.states = ring.Listener("plant_state", PlantState)
-        cls.infos = ring.Listener("plant_info", PlantInfo)
-        cls.status = ring.NodeStatus("plant_simulator")
-        cls.log = ring.Listener("/rosout", Log, "/plant_simulator")
-        cls.pub = ring.publisher("control_action", ControlAction, "/plant_simulator")
+        cls.measurements = exchange.Listener("measurement", Measurement)
+        cls.states = exchange.Listener("plant_state", PlantState)
+        cls.infos = exchange.Listener("plant_info", PlantInfo)
+        cls.status = exchange.NodeStatus("plant_simulator")
+        cls.log = exchange.Listener("/rosout", Log, "/plant_simulator")
+        cls.pub = exchange.publisher("control_action", ControlAction, "/plant_simulator")
         cls.pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         cls.step = rospy.ServiceProxy("plant_simulator/step", Trigger)
         cls.reset = rospy.ServiceProxy("plant_simulator/reset", Trigger)
-        cls.reset.wait_for_service(ring.PATIENCE)
+        cls.reset.wait_for_service(exchange.PATIENCE)
         assert not cls.reset().success  # the first run has not begun
         cls.status.wait(lambda s: s.message == "waiting for /plant_node")
         assert cls.measurements.messages == []
@@ -90,10 +90,10 @@ class PlantNode(unittest.TestCase):
 
     def test_time_does_not_go_back_while_nobody_answers(self):
         """The run is introduced again to who may have missed it; who did not must not see its first second again."""
-        clock = ring.Listener("/clock", Clock)
+        clock = exchange.Listener("/clock", Clock)
         self.advance()
         told = len(self.infos.messages)
-        ring.wait_until(lambda: len(self.infos.messages) > told, "plant_info once more")
+        exchange.wait_until(lambda: len(self.infos.messages) > told, "plant_info once more")
         self.advance()
         clock.wait(lambda m: m.clock == self.now.header.stamp)
         times = [m.clock for m in clock.messages]
@@ -136,8 +136,8 @@ class PlantNode(unittest.TestCase):
         return [(e.code, e.signal) for e in self.state().events]
 
     def test_an_input_put_beyond_its_limits_is_clamped_and_said(self):
-        clamped, states = ("input_clamped", "input/q_r"), ring.Listener("loop_state", LoopState)
-        pub = ring.publisher("disturbance", Disturbance, "/plant_simulator")
+        clamped, states = ("input_clamped", "input/q_r"), exchange.Listener("loop_state", LoopState)
+        pub = exchange.publisher("disturbance", Disturbance, "/plant_simulator")
         self.log.clear()
         pub.publish(name=["input/q_r"], value=[1e300], mode=Disturbance.OVERRIDE)
         self.log.wait(lambda m: "disturbance of input/q_r from sample 1 on" in m.msg)
@@ -151,8 +151,8 @@ class PlantNode(unittest.TestCase):
             if said.mode == LoopState.DEGRADED:
                 break
         self.assertEqual((LoopState.DEGRADED, "input_clamped"), (said.mode, said.code))
-        self.status.wait(lambda s: ring.values(s)["event input_clamped of input/q_r"] == str(self.now.step))
-        effects = ring.Listener("disturbance_effect", CommandEffect)  # the log says one refusal in some seconds only
+        self.status.wait(lambda s: exchange.values(s)["event input_clamped of input/q_r"] == str(self.now.step))
+        effects = exchange.Listener("disturbance_effect", CommandEffect)  # the log says one refusal in some seconds only
         effects.clear()  # the latest one is latched
         pub.publish(name=["input/q_r"], value=[math.inf], mode=Disturbance.OVERRIDE)
         effects.wait(lambda e: e.refused)
@@ -165,15 +165,15 @@ class PlantNode(unittest.TestCase):
         self.assertEqual([], self.events())
 
     def test_a_disturbance_without_a_stamp_acts_at_the_next_sample(self):
-        effects = ring.Listener("disturbance_effect", CommandEffect)
-        pub = ring.publisher("disturbance", Disturbance, "/plant_simulator")
+        effects = exchange.Listener("disturbance_effect", CommandEffect)
+        pub = exchange.publisher("disturbance", Disturbance, "/plant_simulator")
         before = self.status.counts().get("refused: disturbance", 0)
         for wrong in (Disturbance(name=["q_i"], value=[1.0], mode=0), Disturbance(name=["nobody"], value=[1.0], mode=1),
                       Disturbance(name=["q_i"], value=[math.nan], mode=1),
                       Disturbance(name=["q_i", "s_i"], value=[1.0], mode=1)):
             pub.publish(wrong)
         pub.publish(name=["q_i", "input/q_r", "output/x"], value=[1900.0, 100.0, 1.0], mode=Disturbance.OVERRIDE)
-        self.status.wait(lambda s: ring.values(s).get("refused: disturbance") == str(before + 4))
+        self.status.wait(lambda s: exchange.values(s).get("refused: disturbance") == str(before + 4))
         now = self.advance()
         effect = effects.wait(lambda m: not m.refused)
         self.assertEqual((1, ["q_i", "input/q_r", "output/x"]), (effect.step, effect.name))
@@ -191,14 +191,14 @@ class PlantNode(unittest.TestCase):
         self.assertTrue(self.pause(True).success)
         accepted = self.status.counts()["actions accepted"]
         self.pub.publish(self.action())
-        self.status.wait(lambda s: s.message == "paused" and ring.values(s)["actions accepted"] == str(accepted + 1)
-                    and ring.values(s)["step"] == "0")
+        self.status.wait(lambda s: s.message == "paused" and exchange.values(s)["actions accepted"] == str(accepted + 1)
+                    and exchange.values(s)["step"] == "0")
         self.assertTrue(self.step().success)
         self.assertEqual(1, self.next().step)
         self.assertTrue(self.step().success)  # allowed now, taken when the action comes
         self.assertEqual(2, self.advance().step)
         self.pub.publish(self.action())
-        self.status.wait(lambda s: ring.values(s)["actions accepted"] == str(accepted + 3) and ring.values(s)["step"] == "2")
+        self.status.wait(lambda s: exchange.values(s)["actions accepted"] == str(accepted + 3) and exchange.values(s)["step"] == "2")
         self.assertTrue(self.pause(False).success)
         self.assertEqual(3, self.next().step)
 
@@ -216,14 +216,14 @@ class PlantNode(unittest.TestCase):
         self.assertEqual([False] * 9 + [True], finals)
         self.status.wait(lambda s: s.message.startswith("finished"))
         self.measurements.clear()
-        again = ring.Listener("measurement", Measurement).wait()  # latched for those who come later
+        again = exchange.Listener("measurement", Measurement).wait()  # latched for those who come later
         self.assertEqual((10, True), (again.step, again.final))
 
     def test_clock_frames_and_signals_are_there(self):
-        self.assertEqual(rospy.Time(1), ring.Listener("/clock", Clock).wait(
+        self.assertEqual(rospy.Time(1), exchange.Listener("/clock", Clock).wait(
             lambda m: m.clock == rospy.Time(1)).clock)
-        signal, held = ring.Listener("signal/x", Signal), ring.Listener("signal/q_r", Signal)
-        frames = {t.child_frame_id: t for t in ring.Listener("/tf_static", TFMessage).wait().transforms}
+        signal, held = exchange.Listener("signal/x", Signal), exchange.Listener("signal/q_r", Signal)
+        frames = {t.child_frame_id: t for t in exchange.Listener("/tf_static", TFMessage).wait().transforms}
         info = self.infos.wait(lambda m: m.run_id == self.now.run_id)
         self.assertTrue(set(info.output_frames) <= set(frames) | {info.frame_id})
         now = self.advance()

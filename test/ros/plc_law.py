@@ -12,7 +12,7 @@ import rospy
 import rostest
 from fmbpc.msg import Setpoint
 
-import ring
+import exchange
 
 SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts")
 LOWER, UPPER, MOVE = 0.0, 200.0, 4.0
@@ -25,33 +25,33 @@ class PlcLaw(unittest.TestCase):
             return [line for line in map(json.loads, (text for text in file if text.endswith("\n"))) if "moved" in line]
 
     def await_line(self, condition, what, since=0):
-        ring.wait_until(lambda: any(condition(line) for line in self.lines()[since:]), what)
+        exchange.wait_until(lambda: any(condition(line) for line in self.lines()[since:]), what)
 
     def test_the_law_goes_on_when_ros_is_killed(self):
-        folder, self.log, port = tempfile.mkdtemp(), tempfile.NamedTemporaryFile(suffix=".jsonl"), ring.free_port()
-        ring.tool("export", "cstr_modbus", "--to", "c99", "--samples", "10", "--out", folder)
-        plc = subprocess.Popen(ring.tied(["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(port), "--log", self.log.name,
+        folder, self.log, port = tempfile.mkdtemp(), tempfile.NamedTemporaryFile(suffix=".jsonl"), exchange.free_port()
+        exchange.tool("export", "cstr_modbus", "--to", "c99", "--samples", "10", "--out", folder)
+        plc = subprocess.Popen(exchange.tied(["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(port), "--log", self.log.name,
                                           "--law", folder]), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, plc)
+        self.addCleanup(exchange.killed, plc)
         launch = subprocess.Popen(
-            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_plc", f"set:=gateway.modbus.port={port} sampling.duration_h=0",
+            exchange.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_plc", f"set:=gateway.modbus.port={port} sampling.duration_h=0",
                        "draw:=false", "sim_time:=false", f"out:={tempfile.mkdtemp()}"]), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, launch)
+        self.addCleanup(exchange.killed, launch)
         self.await_line(lambda line: line["state"] == CASCADE, "the law in cascade")
         asked = rospy.Publisher("setpoint", Setpoint, queue_size=1, latch=True)
         asked.publish(name=["CA"], value=[0.08], mode=1)
         self.await_line(lambda line: abs(line["setpoint"] - 0.08) < 1e-3, "the setpoint in the PLC")
 
-        nodes = [ring.pid(node) for node in ("/plant_gateway", "/fmbpc_controller")]
+        nodes = [exchange.pid(node) for node in ("/plant_gateway", "/fmbpc_controller")]
         for node in ("/plant_simulator", "/loop_recorder", "/end_launch"):  # the run has no end, and neither have they
-            ring.wait_until(lambda: ring.is_registered(node), node)  # pylint: disable=cell-var-from-loop
-            self.addCleanup(os.kill, ring.pid(node), signal.SIGKILL)
+            exchange.wait_until(lambda: exchange.is_registered(node), node)  # pylint: disable=cell-var-from-loop
+            self.addCleanup(os.kill, exchange.pid(node), signal.SIGKILL)
         os.kill(launch.pid, signal.SIGKILL)
         for node in nodes:
             os.kill(node, signal.SIGKILL)
         killed = len(self.lines())
         self.await_line(lambda line: line["state"] == AUTOMATIC, "the law on its own", killed)
-        ring.wait_until(lambda: len(self.lines()) > killed + 200, "200 samples without ROS")
+        exchange.wait_until(lambda: len(self.lines()) > killed + 200, "200 samples without ROS")
         lines = self.lines()
         self.assertIsNone(plc.poll())
         for line in lines:

@@ -10,25 +10,25 @@ from diagnostic_msgs.msg import DiagnosticArray
 from fmbpc.msg import ControlAction, Measurement, PlantState
 from std_srvs.srv import SetBool
 
-import ring
+import exchange
 
 
 class RealtimeGaps(unittest.TestCase):
     def answer_while_the_plant_waits(self, measurements, pub, run_id):
         """An action that is in time, however slow the machine is."""
-        pause, status = rospy.ServiceProxy("plant_simulator/pause", SetBool), ring.NodeStatus("plant_simulator")
+        pause, status = rospy.ServiceProxy("plant_simulator/pause", SetBool), exchange.NodeStatus("plant_simulator")
         pause(True)
-        paused = int(ring.values(status.wait(lambda s: s.message == "paused"))["step"])
+        paused = int(exchange.values(status.wait(lambda s: s.message == "paused"))["step"])
         measurements.wait(lambda m: m.step == paused)
         pub.publish(ControlAction(run_id=run_id, step=paused, input=[700.0], source=1))
-        status.wait(lambda s: ring.values(s)["actions accepted"] == "1")
+        status.wait(lambda s: exchange.values(s)["actions accepted"] == "1")
         pause(False)
 
     def test_missing_actions_mean_hold_then_fallback(self):
-        measurements, states = ring.Listener("measurement", Measurement), ring.Listener("plant_state", PlantState)
-        diagnostics = ring.Listener("/diagnostics", DiagnosticArray, "/plant_simulator")
-        pub = ring.publisher("control_action", ControlAction, "/plant_simulator")
-        ring.begin()
+        measurements, states = exchange.Listener("measurement", Measurement), exchange.Listener("plant_state", PlantState)
+        diagnostics = exchange.Listener("/diagnostics", DiagnosticArray, "/plant_simulator")
+        pub = exchange.publisher("control_action", ControlAction, "/plant_simulator")
+        exchange.begin()
         run_id = measurements.wait(lambda m: m.step == 8).run_id
         pub.publish(ControlAction(run_id=run_id, step=2, input=[700.0], source=1))  # much too late
         measurements.wait(lambda m: m.step >= 20)
@@ -47,7 +47,7 @@ class RealtimeGaps(unittest.TestCase):
         last = answered[-1]  # then three held, then the fallback again
         self.assertEqual([700.0] * 4 + [800.0] * (47 - last), [inputs[k] for k in range(last, 51)])
         count = str(sum(missing.values()))
-        diagnostics.wait(lambda m: ring.values(ring.diagnostics_of(m, "plant_simulator") or
+        diagnostics.wait(lambda m: exchange.values(exchange.diagnostics_of(m, "plant_simulator") or
                                                type("None", (), {"values": []})).get("inputs missing") == count)
 
 

@@ -19,7 +19,7 @@ import rospy
 import rostest
 from fmbpc.msg import LoopState
 
-import ring
+import exchange
 
 # Debian 11's roslaunch asks its own thread by a name that its Python knows no more, and says so at its end.
 OLD_ROSLAUNCH = re.compile(r"exception in shutdown_process_monitor: .*\nTraceback .*\n(?:  .*\n)+AttributeError: 'ProcessMonitor' object .*\n")
@@ -29,23 +29,23 @@ class Launch:
     """loop.launch as a person types it; what it has said is in text()."""
 
     def __init__(self, test, *arguments):
-        port = ring.free_port()
+        port = exchange.free_port()
         self.uri = f"http://localhost:{port}"
         self.log = tempfile.NamedTemporaryFile("w")
         command = ["roslaunch", "-p", port, "fmbpc", "loop.launch", "draw:=false", *arguments]
-        self.process = subprocess.Popen(ring.tied(command), env={**os.environ, "ROS_MASTER_URI": self.uri}, stdout=self.log,
+        self.process = subprocess.Popen(exchange.tied(command), env={**os.environ, "ROS_MASTER_URI": self.uri}, stdout=self.log,
                                         stderr=subprocess.STDOUT, text=True)
         test.addCleanup(self.log.close)
-        test.addCleanup(ring.killed, self.process)
+        test.addCleanup(exchange.killed, self.process)
 
     def text(self):
         with open(self.log.name, encoding="utf-8") as log:  # not by the handle that the launch writes with
             return re.sub(r"\x1b\[[0-9;]*m", "", log.read())
 
     def pid(self, node):
-        return ring.pid(node, rosgraph.Master("/records", self.uri))
+        return exchange.pid(node, rosgraph.Master("/records", self.uri))
 
-    def end(self, patience=ring.PATIENCE):
+    def end(self, patience=exchange.PATIENCE):
         self.process.wait(patience)
         return self.text()
 
@@ -73,18 +73,18 @@ class Records(unittest.TestCase):
         launch = Launch(self, "loop:=asp_case1", "out:=/dev/null/x")
         launch.end(20)
         why = "out:=/dev/null/x: expected a folder that can be written: /dev/null is no folder"
-        ring.wait_until(lambda: why in launch.text(), "the reason, which comes last")
+        exchange.wait_until(lambda: why in launch.text(), "the reason, which comes last")
         text = launch.text()
         self.assertNotIn("process[", text)
 
     def test_a_recorder_whose_folder_cannot_be_used_says_so_and_is_not_ready(self):
         rospy.set_param("useless/loop_recorder/out", "/dev/null/x")
         rospy.set_param("useless/loop_recorder/stay", True)
-        recorder = subprocess.Popen(ring.tied([ring.program("loop_recorder"), "__ns:=useless"]), stderr=subprocess.PIPE,
+        recorder = subprocess.Popen(exchange.tied([exchange.program("loop_recorder"), "__ns:=useless"]), stderr=subprocess.PIPE,
                                     text=True)
         self.addCleanup(recorder.stderr.close)
-        self.addCleanup(ring.killed, recorder)
-        states = ring.Listener("useless/loop_state", LoopState, connected=False)
+        self.addCleanup(exchange.killed, recorder)
+        states = exchange.Listener("useless/loop_state", LoopState, connected=False)
         state = states.wait(lambda s: s.mode == LoopState.FAILED)
         self.assertEqual("/useless/loop_recorder", state.node)
         self.assertEqual("recording_failed", state.code)
@@ -92,19 +92,19 @@ class Records(unittest.TestCase):
 
     def test_a_node_that_cannot_read_its_loop_says_so_on_loop_state(self):
         rospy.set_param("garbage/loop_text", "plant: [")
-        states = ring.Listener("garbage/loop_state", LoopState, connected=False)
-        controller = subprocess.Popen(ring.tied([ring.program("fmbpc_controller"), "__ns:=garbage"]),
+        states = exchange.Listener("garbage/loop_state", LoopState, connected=False)
+        controller = subprocess.Popen(exchange.tied([exchange.program("fmbpc_controller"), "__ns:=garbage"]),
                                       stderr=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, controller)
+        self.addCleanup(exchange.killed, controller)
         state = states.wait(lambda s: s.mode == LoopState.FAILED)
         self.assertEqual("/garbage/fmbpc_controller", state.node)
         self.assertEqual("cannot_start", state.code)
-        self.assertEqual(1, controller.wait(ring.PATIENCE))
+        self.assertEqual(1, controller.wait(exchange.PATIENCE))
 
     def test_a_recorder_that_dies_ends_the_launch_with_the_files_of_what_it_had(self):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=15", "speedup:=14400", "out:=" + self.out)
         journal = os.path.join(self.out, "journal.bin")
-        ring.wait_until(lambda: holds_samples(journal), "samples on disk")
+        exchange.wait_until(lambda: holds_samples(journal), "samples on disk")
         os.kill(launch.pid("/loop_recorder"), signal.SIGKILL)
         text = launch.end()
         self.assertIn("loop_recorder is gone", text)
@@ -113,7 +113,7 @@ class Records(unittest.TestCase):
         self.assertEqual("asp_case1_clp", summary["loop"])
         self.assertGreater(summary["steps"], 0)
         self.assertFalse(os.path.exists(journal))
-        again = ring.tool("recover", self.out, check=False)
+        again = exchange.tool("recover", self.out, check=False)
         self.assertEqual(1, again.returncode)
         self.assertIn("expected a journal.bin", again.stderr)
 
@@ -125,7 +125,7 @@ class Records(unittest.TestCase):
             self.assertEqual(steps + 2, len(file.readlines()))
         self.assertEqual([], [name for name in ("journal.bin", "history", "loop.bag.active", "loop.bag.joined")
                               if os.path.exists(os.path.join(self.out, name))])
-        done = ring.tool("replay", os.path.join(self.out, "loop.bag"), "--json", check=False)
+        done = exchange.tool("replay", os.path.join(self.out, "loop.bag"), "--json", check=False)
         replayed = json.loads(done.stdout)
         self.assertEqual((0, True, True, 0, steps + 1), (done.returncode, replayed["equal"], replayed["ended"],
                                                          replayed["missing_samples"], replayed["measurements"]), done.stdout)
@@ -133,12 +133,12 @@ class Records(unittest.TestCase):
     def comes_back(self, launch, end):
         """`end` ends the recorder, and another one goes on."""
         journal = os.path.join(self.out, "journal.bin")
-        ring.wait_until(lambda: holds_samples(journal), "samples on disk")
+        exchange.wait_until(lambda: holds_samples(journal), "samples on disk")
         before = launch.pid("/loop_recorder")
         end()
-        ring.wait_until(lambda: not ring.runs(before), "its end")
+        exchange.wait_until(lambda: not exchange.runs(before), "its end")
         size = os.path.getsize(journal)
-        ring.wait_until(lambda: os.path.getsize(journal) > size, "samples of the one that came back")
+        exchange.wait_until(lambda: os.path.getsize(journal) > size, "samples of the one that came back")
 
     def test_a_recorder_that_is_told_to_end_in_mid_run_and_comes_back_has_all_samples_in_record_and_bag(self):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=60", "speedup:=14400", "out:=" + self.out,
@@ -153,16 +153,16 @@ class Records(unittest.TestCase):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=40", "speedup:=14400", "out:=" + self.out, "record:=true")
 
         def start():
-            other = subprocess.Popen(ring.tied([ring.program("loop_recorder"), "__name:=loop_recorder", "/clock:=clock"]),
+            other = subprocess.Popen(exchange.tied([exchange.program("loop_recorder"), "__name:=loop_recorder", "/clock:=clock"]),
                                      env={**os.environ, "ROS_MASTER_URI": launch.uri}, stderr=subprocess.DEVNULL)
-            self.addCleanup(ring.killed, other)
+            self.addCleanup(exchange.killed, other)
         self.comes_back(launch, start)
         self.assert_whole(200, launch.end())
 
     def test_an_endless_run_is_filed_in_parts_each_with_its_bag(self):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=0 disturbance.source=constant", "speedup:=144000", "out:=" + self.out, "record:=true")
         history = os.path.join(self.out, "history")
-        ring.wait_until(lambda: os.path.isdir(history) and os.listdir(history), "the third part of a day", 3 * ring.PATIENCE)
+        exchange.wait_until(lambda: os.path.isdir(history) and os.listdir(history), "the third part of a day", 3 * exchange.PATIENCE)
         launch.process.send_signal(signal.SIGINT)
         text = launch.end()
         first = 0
@@ -181,20 +181,20 @@ class Records(unittest.TestCase):
         self.assertGreater(first, 240)
 
     def test_a_plant_that_is_told_to_end_says_so_last(self):
-        states = ring.Listener("useless/loop_state", LoopState, connected=False)
+        states = exchange.Listener("useless/loop_state", LoopState, connected=False)
         for end in (lambda: os.kill(plant.pid, signal.SIGINT), lambda: rosnode.kill_nodes(["/useless/plant_simulator"])):
-            plant = subprocess.Popen(ring.tied([ring.program("plant_simulator"), "__ns:=useless"]), stderr=subprocess.DEVNULL)
-            self.addCleanup(ring.killed, plant)
+            plant = subprocess.Popen(exchange.tied([exchange.program("plant_simulator"), "__ns:=useless"]), stderr=subprocess.DEVNULL)
+            self.addCleanup(exchange.killed, plant)
             states.clear()
             states.wait(lambda s: s.node == "/useless/plant_simulator")
             end()
-            self.assertEqual(0, plant.wait(ring.PATIENCE))
+            self.assertEqual(0, plant.wait(exchange.PATIENCE))
             last = states.wait(lambda s: s.code == "shut_down")
             self.assertEqual((LoopState.STALLED, True), (last.mode, last.summary))
 
     def test_a_recorder_that_hangs_is_killed_when_the_run_is_over(self):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=15", "speedup:=14400", "out:=" + self.out)
-        ring.wait_until(lambda: holds_samples(os.path.join(self.out, "journal.bin")), "samples on disk")
+        exchange.wait_until(lambda: holds_samples(os.path.join(self.out, "journal.bin")), "samples on disk")
         rosgraph.Master("/records", launch.uri).setParam("/end_launch/hanging", 2.0)
         os.kill(launch.pid("/loop_recorder"), signal.SIGSTOP)
         text = launch.end()
@@ -208,24 +208,24 @@ class Records(unittest.TestCase):
     def test_a_node_that_is_started_again_and_again_on_a_bad_loop_stays_until_there_is_another(self):
         rospy.set_param("stays/loop_text", "plant: [")
         rospy.set_param("stays/fmbpc_controller/respawned", True)
-        states = ring.Listener("stays/loop_state", LoopState, connected=False)
-        controller = subprocess.Popen(ring.tied([ring.program("fmbpc_controller"), "__ns:=stays"]), stderr=subprocess.PIPE,
+        states = exchange.Listener("stays/loop_state", LoopState, connected=False)
+        controller = subprocess.Popen(exchange.tied([exchange.program("fmbpc_controller"), "__ns:=stays"]), stderr=subprocess.PIPE,
                                       text=True)
         self.addCleanup(controller.stderr.close)
-        self.addCleanup(ring.killed, controller)
+        self.addCleanup(exchange.killed, controller)
         for _ in range(8):  # for longer than one that ends would be heard
             self.assertEqual(LoopState.FAILED, states.wait(lambda s: s.code == "cannot_start").mode)
             states.clear()
         self.assertIsNone(controller.poll())
         rospy.set_param("stays/loop_text", "plant: [[")
-        self.assertEqual(1, controller.wait(ring.PATIENCE))
+        self.assertEqual(1, controller.wait(exchange.PATIENCE))
         self.assertIn("waits for another loop_text", controller.stderr.read())
 
     def test_in_a_namespace_with_a_bag_and_quotes_in_the_names(self):
         out = os.path.join(self.out, "it's mine")
         text = Launch(self, "loop:=asp_case1", "set:=sampling.duration_h=2", "pace:=lockstep", "ns:=/a", "record:=true",
                       "out:=" + out).end()
-        replayed = json.loads(ring.tool("replay", os.path.join(out, "loop.bag"), "--json").stdout)
+        replayed = json.loads(exchange.tool("replay", os.path.join(out, "loop.bag"), "--json").stdout)
         self.assertEqual((True, True, 0, 11), (replayed["equal"], replayed["ended"], replayed["missing_samples"],
                                                replayed["measurements"]), text)
         self.assertEqual(10, self.summary("it's mine")["steps"], text)

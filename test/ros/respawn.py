@@ -13,7 +13,7 @@ import rostest
 from fmbpc.msg import CommandEffect, ControlAction, Measurement, PlantState, Setpoint, Tracking
 from std_msgs.msg import String
 
-import ring
+import exchange
 
 
 def pid(node):
@@ -28,11 +28,11 @@ def pid(node):
 class Respawn(unittest.TestCase):
     def kill_in_the_middle(self, victim):
         """Asks for x = 1900, kills the victim once that acts; returns the step from which it acts."""
-        effects, active = ring.Listener("setpoint_effect", CommandEffect), ring.Listener("setpoint_active", Setpoint)
-        actions = ring.Listener("control_action", ControlAction)
-        ring.begin()
+        effects, active = exchange.Listener("setpoint_effect", CommandEffect), exchange.Listener("setpoint_active", Setpoint)
+        actions = exchange.Listener("control_action", ControlAction)
+        exchange.begin()
         actions.wait(lambda a: a.step >= 5)
-        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        setpoint = exchange.publisher("setpoint", Setpoint, "/fmbpc_controller")
         setpoint.publish(name=["x"], value=[1900.0], mode=Setpoint.OVERRIDE)
         asked = effects.wait().step
         active.wait(lambda m: m.name == ["x"] and list(m.value) == [1900.0])
@@ -40,26 +40,26 @@ class Respawn(unittest.TestCase):
         if rospy.get_param("~realtime", False):
             self.miss_two_samples(first)
         os.kill(first, signal.SIGKILL)
-        ring.wait_until(lambda: pid(victim) not in (0, first), f"another {victim}")
+        exchange.wait_until(lambda: pid(victim) not in (0, first), f"another {victim}")
         return asked
 
     def miss_two_samples(self, process):
         """However fast it comes back: it is held first until the plant has gone on without it."""
         os.kill(process, signal.SIGSTOP)
-        steps = ring.Listener("measurement", Measurement)
+        steps = exchange.Listener("measurement", Measurement)
         stopped_at = steps.wait().step
         steps.wait(lambda m: m.step >= stopped_at + 2)
 
     def test_a_killed_node_comes_back_and_no_sample_is_lost(self):
         victim = rospy.get_param("~victim")
-        recorded = ring.Listener("recorded", String)
-        measurements = ring.Listener("measurement", Measurement)
-        self.states, self.tracking = ring.Listener("plant_state", PlantState), ring.Listener("tracking", Tracking)
+        recorded = exchange.Listener("recorded", String)
+        measurements = exchange.Listener("measurement", Measurement)
+        self.states, self.tracking = exchange.Listener("plant_state", PlantState), exchange.Listener("tracking", Tracking)
         asked = self.kill_in_the_middle(victim)
         if rospy.get_param("~realtime", False):
             return self.check_realtime(measurements, asked)
         folder = recorded.wait().data
-        summary = ring.summary(folder)
+        summary = exchange.summary(folder)
         self.assertEqual((100, True), (summary["steps"], summary["complete"]))
         self.assertTrue(measurements.wait(lambda m: m.step == 100).final)
         with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:

@@ -12,7 +12,7 @@ import rostest
 from fmbpc.msg import ControlAction, FuzzyModel, OperatorState
 from std_srvs.srv import SetBool
 
-import ring
+import exchange
 
 SETTINGS = {"coincidence_steps": 17}
 
@@ -23,29 +23,29 @@ def learned(model):
 
 class RespawnModel(unittest.TestCase):
     def setUp(self):
-        self.models = ring.Listener("fuzzy_model", FuzzyModel)
-        self.actions = ring.Listener("control_action", ControlAction)
-        self.controller = ring.NodeStatus("fmbpc_controller")
-        self.kept = ring.Listener("operator_kept", OperatorState)
+        self.models = exchange.Listener("fuzzy_model", FuzzyModel)
+        self.actions = exchange.Listener("control_action", ControlAction)
+        self.controller = exchange.NodeStatus("fmbpc_controller")
+        self.kept = exchange.Listener("operator_kept", OperatorState)
         self.pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
 
     def respawned(self, node):
         """Kills it and waits for the next one."""
-        first = ring.pid(node)
+        first = exchange.pid(node)
         os.kill(first, signal.SIGKILL)
 
         def another():
             try:
-                return ring.pid(node) not in (0, first)
+                return exchange.pid(node) not in (0, first)
             except Exception:  # it is not there, or half there
                 return False
-        ring.wait_until(another, f"another {node}")
+        exchange.wait_until(another, f"another {node}")
 
     def settings(self):
-        return dynamic_reconfigure.client.Client("fmbpc_controller", timeout=ring.PATIENCE)
+        return dynamic_reconfigure.client.Client("fmbpc_controller", timeout=exchange.PATIENCE)
 
     def test_model_and_settings_are_back(self):
-        ring.begin()
+        exchange.begin()
         self.actions.wait(lambda a: a.step >= 2)
         last = self.models.wait(learned)
         self.actions.wait(lambda a: a.step > last.step + 2)
@@ -59,10 +59,10 @@ class RespawnModel(unittest.TestCase):
         self.respawned("/fmbpc_controller")
         self.pause(False)
         self.actions.wait(lambda a: a.step > step + 1)
-        back = ring.values(self.controller.wait(lambda s: "model source" in ring.values(s)))
+        back = exchange.values(self.controller.wait(lambda s: "model source" in exchange.values(s)))
         self.assertIn("online from", back["model source"])
         self.assertIn(back["model source"], [m.source for m in self.models.messages])
-        shown = self.settings().get_configuration(timeout=ring.PATIENCE)
+        shown = self.settings().get_configuration(timeout=exchange.PATIENCE)
         self.assertEqual(SETTINGS["coincidence_steps"], shown["coincidence_steps"])
 
         self.models.clear()

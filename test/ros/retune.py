@@ -14,7 +14,7 @@ from fmbpc.msg import ControlAction, Measurement
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
-import ring
+import exchange
 
 REST, MOVE = 290, 304  # samples from which new settings act; the setpoint steps at 300
 CALM = {"horizon_steps": 30, "weight_move": "I=300"}
@@ -28,8 +28,8 @@ def inputs(folder):
 
 class Retune(unittest.TestCase):
     def setUp(self):
-        self.measurements = ring.Listener("measurement", Measurement)
-        self.actions = ring.Listener("control_action", ControlAction)
+        self.measurements = exchange.Listener("measurement", Measurement)
+        self.actions = exchange.Listener("control_action", ControlAction)
         self.pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         self.step = rospy.ServiceProxy("plant_simulator/step", Trigger)
 
@@ -43,31 +43,31 @@ class Retune(unittest.TestCase):
 
     def in_process(self, settings):
         with tempfile.TemporaryDirectory() as folder:
-            ring.run_in_process("surge_tank_steps", folder, [f"controller.{k}={v}" for k, v in settings.items()])
+            exchange.run_in_process("surge_tank_steps", folder, [f"controller.{k}={v}" for k, v in settings.items()])
             return inputs(folder)
 
     def test_settings_change_without_a_bump_and_take_effect(self):
-        recorded = ring.Listener("recorded", String)
+        recorded = exchange.Listener("recorded", String)
         rospy.wait_for_service("plant_simulator/pause")
         self.pause(True)
-        ring.begin()  # now the loop may begin
-        client = dynamic_reconfigure.client.Client("fmbpc_controller", timeout=ring.PATIENCE)
-        shown = client.get_configuration(timeout=ring.PATIENCE)
+        exchange.begin()  # now the loop may begin
+        client = dynamic_reconfigure.client.Client("fmbpc_controller", timeout=exchange.PATIENCE)
+        shown = client.get_configuration(timeout=exchange.PATIENCE)
         self.assertEqual((20, 1, "H=1", "I=1"), tuple(shown[key] for key in (
             "horizon_steps", "move_steps", "weight_output", "weight_move")))
         self.measurements.wait()
         self.go_to(REST - 1)
         self.assertEqual("I=300", client.update_configuration(CALM)["weight_move"])
-        status = ring.NodeStatus("fmbpc_controller")
+        status = exchange.NodeStatus("fmbpc_controller")
         refused = client.update_configuration({"weight_move": "H=2"})
-        counted = ring.values(status.wait(lambda s: "refused: settings" in ring.values(s)))
+        counted = exchange.values(status.wait(lambda s: "refused: settings" in exchange.values(s)))
         self.assertEqual("1", counted["refused: settings"])
         self.assertEqual(("I=300", 30), (refused["weight_move"], refused["horizon_steps"]))
         self.go_to(MOVE - 1)
         self.assertEqual(12, client.update_configuration(QUICK)["horizon_steps"])
         self.pause(False)
         folder = recorded.wait().data
-        summary = ring.summary(folder)
+        summary = exchange.summary(folder)
         self.assertTrue(summary["complete"])
         self.assertEqual((0, 0), (summary["violations"]["input"], summary["violations"]["move"]))
         run, first = inputs(folder), self.in_process({})

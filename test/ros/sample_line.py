@@ -8,18 +8,18 @@ import rospy
 import rostest
 from std_msgs.msg import String
 
-import ring
+import exchange
 
 
 class SampleLine(unittest.TestCase):
     def test_the_run_is_that_of_the_same_line_in_one_process(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set", "").split()
-        folder = ring.Listener("recorded", String).wait(patience=150).data
+        folder = exchange.Listener("recorded", String).wait(patience=150).data
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process(loop, reference, sets)
-            ring.assert_same_run(self, folder, reference)
-        self.assertEqual(rospy.get_param("~steps"), ring.summary(folder)["steps"])
-        column = [row.split(",")[1] for row in ring.trajectory(folder)[1:]]
+            exchange.run_in_process(loop, reference, sets)
+            exchange.assert_same_run(self, folder, reference)
+        self.assertEqual(rospy.get_param("~steps"), exchange.summary(folder)["steps"])
+        column = [row.split(",")[1] for row in exchange.trajectory(folder)[1:]]
         first_move = next(k for k, value in enumerate(column) if value != column[0])
         # u(0) moves the reactor by sample 1; the sample line shows it so many samples later
         self.assertEqual(rospy.get_param("~delay"), first_move - 1)

@@ -14,7 +14,7 @@ import rospy
 import rostest
 from fmbpc.msg import Measurement
 
-import ring
+import exchange
 
 SCRIPTS = os.path.join(roslib.packages.get_pkg_dir("fmbpc"), "scripts")
 sys.path.insert(0, SCRIPTS)
@@ -29,7 +29,7 @@ def watch(*arguments, check=True):
 
 class Watch(unittest.TestCase):
     def setUp(self):
-        ring.Listener("measurement", Measurement).wait(lambda m: m.step >= 5)
+        exchange.Listener("measurement", Measurement).wait(lambda m: m.step >= 5)
 
     def test_the_terminal_shows_state_and_signals(self):
         text = watch("--seconds", "3").stdout
@@ -55,7 +55,7 @@ class Watch(unittest.TestCase):
 
     def test_signals_of_one_unit_share_a_plot_unless_their_sizes_are_far_apart(self):
         view = live_view.LiveView()
-        ring.wait_until(lambda: view.sample() and view.complete() and "x_setpoint" in view.values, "all signals, also what is tracked")
+        exchange.wait_until(lambda: view.sample() and view.complete() and "x_setpoint" in view.values, "all signals, also what is tracked")
         self.assertEqual([["s", "s_setpoint", "s_reference"], ["x", "x_setpoint", "x_reference"], ["q_r"]],
                          [panel.names for panel in view.panels()])
         self.assertEqual(("h", 40.0, True), (view.axis.unit, view.axis.length, view.axis.endless))  # 200 samples

@@ -43,7 +43,8 @@ TEST_F(ExcitationLoop, TimesInSecondsBecomeSamples) {
   EXPECT_EQ(prbs.controllerParams<ExcitationParams>().signals.at(0).clock_steps, 2);
   const LoopFile steps = read("signal: steps, schedule: [{time_h: 0.2, value: 5}]");
   EXPECT_EQ(steps.controllerParams<ExcitationParams>().signals.at(0).schedule.at(0).step, 1);
-  EXPECT_EQ(steps.ring.wait_for, (std::vector<std::string>{"loop_recorder", "fmbpc_controller"}));
+  EXPECT_EQ(steps.exchange.wait_for,
+            (std::vector<std::string>{"loop_recorder", "fmbpc_controller"}));
 }
 
 TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {

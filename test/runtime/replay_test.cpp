@@ -32,13 +32,13 @@ class ReplayOfRuns : public LoopFolder {
       run.control.emplace(step, sample.action);
     }
     run.setpoints.emplace(25, Command{0, {"x"}, {1900.0}, CommandMode::kOverride});
-    OperatorWishes wishes;
-    wishes.manual = true;
-    run.wishes.emplace(50, wishes);
-    wishes.manual_given = true;
-    wishes.manual_input = Vector::Constant(1, 650.0);
-    run.wishes.emplace(60, wishes);
-    run.wishes.emplace(80, OperatorWishes{});
+    OperatorState operator_state;
+    operator_state.manual = true;
+    run.operator_state.emplace(50, operator_state);
+    operator_state.manual_given = true;
+    operator_state.manual_input = Vector::Constant(1, 650.0);
+    run.operator_state.emplace(60, operator_state);
+    run.operator_state.emplace(80, OperatorState{});
     IdentifierSession identifier(loop);
     if (const TsModel* model = identifier.start()) run.models.emplace(0, *model);
     return run;
@@ -73,7 +73,7 @@ TEST_F(ReplayOfRuns, TheFirstDifferenceIsNamed) {
 
 TEST_F(ReplayOfRuns, WhatAnOperatorAskedBelongsToTheRun) {
   RecordedRun run = record(loop("asp_case1"));
-  run.wishes.clear();
+  run.operator_state.clear();
   EXPECT_EQ(replay(loop("asp_case1"), run).control.first_difference.find("sample 50"), 0U);
   run.setpoints.clear();
   EXPECT_EQ(replay(loop("asp_case1"), run).control.first_difference.find("sample 25"), 0U);

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "fmbpc/base/input_error.hpp"
-#include "runtime/loop_ring.hpp"
+#include "runtime/loop_exchange.hpp"
 #include "runtime/plan.hpp"
 
 namespace fpc {
@@ -133,8 +133,8 @@ TEST(RunPlant, AnOuterLoopDoesNotWindUpAgainstTheLimitsOfTheInnerOne) {
 TEST(RunPlant, AnOuterLoopStartsWhereTheInnerOneIs) {
   PlantLoops plant = vessel();
   RunOptions options;
-  LoopRing outer(plant.loops[indexOf(plant, "vessel")].loop, options,
-                 plant.loops[indexOf(plant, "vessel")].links);
+  LoopExchange outer(plant.loops[indexOf(plant, "vessel")].loop, options,
+                     plant.loops[indexOf(plant, "vessel")].links);
   Measurement at;
   const Vector by_hand = Vector::Constant(1, 61.0);  // of the jacket, in a person's hands
   for (int k = 0; k < 200; ++k) {

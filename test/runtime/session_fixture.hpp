@@ -1,5 +1,5 @@
 // A plant with two outputs and one input, its samples, and a controller that remembers what was
-// asked of it: for tests of the rules of the ring.
+// asked of it: for tests of the rules of the exchange.
 #pragma once
 
 #include <functional>

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

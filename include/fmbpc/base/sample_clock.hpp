@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 
 namespace fpc {
 

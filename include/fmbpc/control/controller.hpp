@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "fmbpc/base/event.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/input_limits.hpp"
-#include "fmbpc/base/ring.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 #include "fmbpc/control/settings.hpp"
 #include "fmbpc/model/ts_model.hpp"

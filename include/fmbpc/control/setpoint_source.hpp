@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fmbpc/base/command_table.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/base/types.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/types.hpp"
 #include "fmbpc/model/domain.hpp"
 #include "fmbpc/model/membership.hpp"

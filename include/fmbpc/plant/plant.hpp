@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/layout.hpp"
-#include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
@@ -77,10 +77,10 @@ class Plant {
   /// The description's `algebraic` quantities at x and d, with u the input in force until then.
   /// Without allocation. Default: there are none.
   virtual void algebraic(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> y) const;
-  /// What a local loop inside the plant, sampled with the ring, makes of the applied input: called
-  /// once per sample before the integration, u is written over and then held. x: the state now,
-  /// before: one sample ago (at the start the same). Controllers never see what it adds. Default:
-  /// no such loop.
+  /// What a local loop inside the plant, sampled with the exchange, makes of the applied input:
+  /// called once per sample before the integration, u is written over and then held. x: the state
+  /// now, before: one sample ago (at the start the same). Controllers never see what it adds.
+  /// Default: no such loop.
   virtual void localLoop(VectorRef x, VectorRef before, Eigen::Ref<Vector> u) const;
   /// nullptr (default): derivatives() say everything and an integrator moves the plant. May keep a
   /// reference to the plant.

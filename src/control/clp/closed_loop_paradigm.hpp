@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/input_limits.hpp"
-#include "fmbpc/base/ring.hpp"
 #include "optim/qp.hpp"
 
 namespace fpc {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "control/clp/prediction.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

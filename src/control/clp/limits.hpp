@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "control/clp/prediction.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/input_limits.hpp"
-#include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

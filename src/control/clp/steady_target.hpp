@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 
 namespace fpc {

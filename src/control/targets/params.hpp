@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "estimation/disturbance_observer.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/input_limits.hpp"
-#include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

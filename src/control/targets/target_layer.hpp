@@ -7,7 +7,7 @@
 
 #include "control/targets/params.hpp"
 #include "fmbpc/base/event.hpp"
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/model/ts_model.hpp"
 
 namespace fpc {

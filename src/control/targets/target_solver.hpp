@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {

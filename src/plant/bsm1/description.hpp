@@ -6,8 +6,8 @@
 
 namespace fpc::bsm1 {
 
-/// What the ring's inputs are: the valves themselves, setpoints of the local loops, or one degree
-/// of aeration that sets the oxygen setpoints.
+/// What the exchange's inputs are: the valves themselves, setpoints of the local loops, or one
+/// degree of aeration that sets the oxygen setpoints.
 enum class Front { kValves, kSetpoints, kAir };
 
 /// Oxygen setpoint of an aerated tank: offset + slope * air, kept within its limits [g/m3].

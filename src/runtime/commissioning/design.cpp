@@ -17,8 +17,8 @@
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "optim/simplex_search.hpp"
+#include "runtime/loop_exchange.hpp"
 #include "runtime/loop_probe.hpp"
-#include "runtime/loop_ring.hpp"
 #include "runtime/run.hpp"
 
 namespace fpc {
@@ -620,14 +620,15 @@ class Designer {
     LoopFile loop = scenario(asked, model);
     loop.simulation.disturbance.values = noiseOf(loop.simulation, model, seed);
     const RunOptions options;
-    LoopRing ring(loop, options);
+    LoopExchange exchange(loop, options);
     const double n = loop.simulation.samples + 1.0;
     Counted counted;
-    while (ring.step()) {
-      while (counted.samples + 1 < ring.recorded().samples.size()) count(ring.recorded(), counted);
+    while (exchange.step()) {
+      while (counted.samples + 1 < exchange.recorded().samples.size())
+        count(exchange.recorded(), counted);
       if (enough(counted.over(n))) return counted.over(n);
     }
-    const RunRecord record = ring.take();
+    const RunRecord record = exchange.take();
     if (!record.complete) return kFailed;
     while (counted.samples < record.samples.size()) count(record, counted);
     return counted.over(n);

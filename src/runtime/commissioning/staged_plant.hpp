@@ -2,7 +2,7 @@
 // or alive behind a loop over topics.
 #pragma once
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/exchange.hpp"
 
 namespace fpc {
 

@@ -1,7 +1,7 @@
-// Bytes as the fate of the messages of one short run: each message of the ring is delivered, lost,
-// repeated, kept for later or changed on its way. Whatever happens, inputs stay finite and inside
-// their limits, nothing but an InputError is thrown, and once the messages arrive unharmed again
-// the run goes on to its end.
+// Bytes as the fate of the messages of one short run: each message of the exchange is delivered,
+// lost, repeated, kept for later or changed on its way. Whatever happens, inputs stay finite and
+// inside their limits, nothing but an InputError is thrown, and once the messages arrive unharmed
+// again the run goes on to its end.
 #include <fmbpc/FuzzyModel.h>
 
 #include <deque>
@@ -41,9 +41,9 @@ const LoopFile& loopNumber(int number) {
   return loops[static_cast<std::size_t>(number) % loops.size()];
 }
 
-class FuzzedRing {
+class FuzzedExchange {
  public:
-  FuzzedRing(const LoopFile& loop, Bytes& bytes)
+  FuzzedExchange(const LoopFile& loop, Bytes& bytes)
       : loop_(loop),
         bytes_(bytes),
         simulated_(new SimulatedProcess(makeSimulation(loop))),
@@ -178,10 +178,10 @@ class FuzzedRing {
 
 }  // namespace
 
-void ring(const std::string& text) {
+void exchange(const std::string& text) {
   Bytes bytes(text);
   const LoopFile& loop = loopNumber(bytes.next());
-  FuzzedRing(loop, bytes).run();
+  FuzzedExchange(loop, bytes).run();
 }
 
 }  // namespace fpc::fuzz

@@ -16,12 +16,12 @@
 
 namespace fpc {
 
-class LoopRing {
+class LoopExchange {
  public:
   /// Keeps references to both. @throws InputError for an external plant, an endless run, or without
   /// the model a law needs.
-  LoopRing(const LoopFile& loop, const RunOptions& options,
-           const std::vector<LoopLink>& links = {});
+  LoopExchange(const LoopFile& loop, const RunOptions& options,
+               const std::vector<LoopLink>& links = {});
 
   /// The sample on the table: its answer, then the next one. False: it was the final one.
   bool step() {

@@ -1,9 +1,9 @@
 // What was asked of a controller before its first sample, and what becomes of it when the plant's
-// end of the ring comes back.
+// end of the exchange comes back.
 #include "runtime/session_fixture.hpp"
 
 namespace fpc {
-namespace control_session_wishes_test {
+namespace control_operator_state_test {
 
 using namespace test_session;
 
@@ -20,9 +20,9 @@ std::unique_ptr<ControllerSession> newSession(const SetpointParams& setpoint = s
   return session;
 }
 
-OperatorWishes automatic() { return newSession()->wishes(); }
+OperatorState automatic() { return newSession()->operator_state(); }
 
-TEST(SessionWishes, ManualAskedOfAControllerThatCameBackIsNotUndoneByWhatWasKept) {
+TEST(SessionOperatorState, ManualAskedOfAControllerThatCameBackIsNotUndoneByWhatWasKept) {
   const auto session = newSession();
   session->manual(true);
   session->manualInput(of({650.0}));
@@ -32,8 +32,8 @@ TEST(SessionWishes, ManualAskedOfAControllerThatCameBackIsNotUndoneByWhatWasKept
   EXPECT_EQ(session->answer().base.input, of({650.0}));
 }
 
-TEST(SessionWishes, AutomaticAskedOfItWinsOverAManualThatWasKept) {
-  OperatorWishes kept = automatic();
+TEST(SessionOperatorState, AutomaticAskedOfItWinsOverAManualThatWasKept) {
+  OperatorState kept = automatic();
   kept.manual = kept.manual_given = true;
   kept.manual_input = of({900.0});
   const auto session = newSession(), untold = newSession();
@@ -46,7 +46,7 @@ TEST(SessionWishes, AutomaticAskedOfItWinsOverAManualThatWasKept) {
   EXPECT_EQ(untold->answer().base.input, of({900.0}));
 }
 
-TEST(SessionWishes, WhoHasBeenToldManualIsNotHeldForWantOfWhatWasKept) {
+TEST(SessionOperatorState, WhoHasBeenToldManualIsNotHeldForWantOfWhatWasKept) {
   const auto session = newSession();
   session->manual(true);
   session->holdUntilReleased();
@@ -56,8 +56,8 @@ TEST(SessionWishes, WhoHasBeenToldManualIsNotHeldForWantOfWhatWasKept) {
   EXPECT_EQ(session->answer().base.input, of({612.0}));
 }
 
-TEST(SessionWishes, HoldSetpointsAndSettingsAskedOfItAreNewerThanThoseKept) {
-  OperatorWishes kept = automatic();
+TEST(SessionOperatorState, HoldSetpointsAndSettingsAskedOfItAreNewerThanThoseKept) {
+  OperatorState kept = automatic();
   kept.recipe = {true, 3, 0};
   kept.setpoints = {{0, {"x"}, {1800.0}, CommandMode::kOverride},
                     {0, {"s"}, {60.0}, CommandMode::kOverride}};
@@ -70,10 +70,11 @@ TEST(SessionWishes, HoldSetpointsAndSettingsAskedOfItAreNewerThanThoseKept) {
   session->receive(sample(7));
   EXPECT_FALSE(session->setpoint().held());
   EXPECT_EQ(session->answer().tracking.setpoint, of({60.0, 2100.0}));
-  EXPECT_EQ(session->wishes().settings, (Settings{{"weight_move", "2"}, {"horizon_steps", "9"}}));
+  EXPECT_EQ(session->operator_state().settings,
+            (Settings{{"weight_move", "2"}, {"horizon_steps", "9"}}));
 }
 
-TEST(SessionWishes, APlantThatGoesOnUnderANewRunKeepsSetpointAndPlaceOfTheSchedule) {
+TEST(SessionOperatorState, APlantThatGoesOnUnderANewRunKeepsSetpointAndPlaceOfTheSchedule) {
   SetpointParams scheduled = setpoints();
   scheduled.schedule = {{1.0, of({70.0, 2000.0})}};  // sample 5
   const auto session = newSession(scheduled);
@@ -90,7 +91,7 @@ TEST(SessionWishes, APlantThatGoesOnUnderANewRunKeepsSetpointAndPlaceOfTheSchedu
   EXPECT_EQ(session->answer().tracking.setpoint, of({55.0, 2000.0}));
 }
 
-TEST(SessionWishes, AHeldScheduleAndAPendingCommandGoOnToo) {
+TEST(SessionOperatorState, AHeldScheduleAndAPendingCommandGoOnToo) {
   SetpointParams scheduled = setpoints();
   scheduled.schedule = {{1.0, of({70.0, 2000.0})}};
   const auto session = newSession(scheduled);
@@ -125,5 +126,5 @@ TEST(SessionComesBack, ASampleThatWasCalledTheLastByMistakeIsAnsweredWhenItComes
   EXPECT_EQ(session->receive(sample(2)), Receipt::kAnswered);
 }
 
-}  // namespace control_session_wishes_test
+}  // namespace control_operator_state_test
 }  // namespace fpc

@@ -1,5 +1,5 @@
-// Sections `loop`, `tf` and `report`: how the ring over topics runs, where equipment stands, what
-// is judged.
+// Sections `loop`, `tf` and `report`: how the exchange over topics runs, where equipment stands,
+// what is judged.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,7 +14,7 @@
 namespace fpc {
 namespace {
 
-std::vector<std::string> ringNodes(const LoopFile& loop) {
+std::vector<std::string> exchangeNodes(const LoopFile& loop) {
   std::vector<std::string> nodes{"loop_recorder", "fmbpc_controller"};
   if (loop.controllerType().needs_model || loop.has_identify || loop.targets.enabled)
     nodes.emplace_back("fuzzy_identifier");
@@ -25,9 +25,9 @@ std::vector<std::string> ringNodes(const LoopFile& loop) {
 
 /// Who speaks on which topic; a plant that is not ours may have any name, unless it is behind our
 /// gateway.
-std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& loop) {
+std::map<std::string, std::vector<std::string>> exchangePublishers(const LoopFile& loop) {
   using Names = std::vector<std::string>;
-  const std::string controller = ringNodes(loop)[1];
+  const std::string controller = exchangeNodes(loop)[1];
   const Names plant = loop.gateway.enabled() ? Names{"plant_gateway"}
                       : loop.external_plant  ? Names{}
                                              : Names{"plant_simulator"};
@@ -55,9 +55,9 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
           {"services", {}}};
 }
 
-void readPublishers(YamlSection& section, RingParams& ring) {
+void readPublishers(YamlSection& section, ExchangeParams& exchange) {
   YamlSection publishers = section.section("publishers");
-  for (auto& [topic, names] : ring.publishers) publishers.names(topic, names);
+  for (auto& [topic, names] : exchange.publishers) publishers.names(topic, names);
   publishers.finish();
 }
 
@@ -176,22 +176,22 @@ std::vector<double> toStd(const Vector& v) { return {v.data(), v.data() + v.size
 
 }  // namespace
 
-void readRing(YamlSection& root, LoopFile& loop) {
+void readExchange(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("loop");
-  readOption(section, "pace", loop.ring.pace);
-  section.number("speedup", loop.ring.speedup, kFinitePositive);
+  readOption(section, "pace", loop.exchange.pace);
+  section.number("speedup", loop.exchange.speedup, kFinitePositive);
   if (loop.gateway.enabled()) {  // a plant that is not ours waits for nobody
-    loop.ring.pace = Pace::kRealtime;
-    loop.ring.speedup = loop.gateway.speedup;
+    loop.exchange.pace = Pace::kRealtime;
+    loop.exchange.speedup = loop.gateway.speedup;
   }
-  loop.ring.wait_for = loop.ring.members = ringNodes(loop);
-  section.names("wait_for", loop.ring.wait_for);
-  section.number("ready_timeout_s", loop.ring.ready_timeout_s, {0.0, 1e6, true});
-  section.boolean("publish_clock", loop.ring.publish_clock);
-  section.number("action_timeout_s", loop.ring.action_timeout_s, kFinitePositive);
-  loop.ring.publishers = ringPublishers(loop);
-  readPublishers(section, loop.ring);
-  letGatewayForward(loop.gateway, loop.ring.publishers["setpoint"]);
+  loop.exchange.wait_for = loop.exchange.members = exchangeNodes(loop);
+  section.names("wait_for", loop.exchange.wait_for);
+  section.number("ready_timeout_s", loop.exchange.ready_timeout_s, {0.0, 1e6, true});
+  section.boolean("publish_clock", loop.exchange.publish_clock);
+  section.number("action_timeout_s", loop.exchange.action_timeout_s, kFinitePositive);
+  loop.exchange.publishers = exchangePublishers(loop);
+  readPublishers(section, loop.exchange);
+  letGatewayForward(loop.gateway, loop.exchange.publishers["setpoint"]);
   section.finish();
 }
 

@@ -1,4 +1,4 @@
-#include "runtime/loop_ring.hpp"
+#include "runtime/loop_exchange.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -29,8 +29,8 @@ const LoopFile& thatEnds(const LoopFile& loop) {
 
 }  // namespace
 
-LoopRing::LoopRing(const LoopFile& loop, const RunOptions& options,
-                   const std::vector<LoopLink>& links)
+LoopExchange::LoopExchange(const LoopFile& loop, const RunOptions& options,
+                           const std::vector<LoopLink>& links)
     : loop_(thatEnds(loop)),
       options_(options),
       made_(std::make_unique<SimulatedProcess>(makeSimulation(loop))),
@@ -54,14 +54,14 @@ LoopRing::LoopRing(const LoopFile& loop, const RunOptions& options,
   plant_.start(0.0);
 }
 
-void LoopRing::takeFromOthers(const Measurement& now) {
+void LoopExchange::takeFromOthers(const Measurement& now) {
   if (asks_.empty()) return;
   if (const auto command = asks_.command(now.header.time_ns))
     controller_.session().command(*command);
   takePlans(asks_, now.header, loop_.plant_info, controller_.session());
 }
 
-void LoopRing::answer() {
+void LoopExchange::answer() {
   const Measurement& now = measurement();
   const std::uint32_t step = now.header.step;
   controller_.turnTo(step);
@@ -83,7 +83,7 @@ void LoopRing::answer() {
   recorder_.receive(controller_.report());
 }
 
-bool LoopRing::advance() {
+bool LoopExchange::advance() {
   const Measurement now = measurement();
   if (!now.final && feeds_.empty()) {
     plant_.receive(controller_.sent());
@@ -99,13 +99,13 @@ bool LoopRing::advance() {
   return !now.final;
 }
 
-void LoopRing::hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
-                    const Eigen::Ref<const Matrix>& values, bool planned) {
+void LoopExchange::hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
+                        const Eigen::Ref<const Matrix>& values, bool planned) {
   feeds_.hear(from, of, sample, values, planned);
   asks_.hear(from, of, sample, values, planned);
 }
 
-RunRecord LoopRing::take() {
+RunRecord LoopExchange::take() {
   recorder_.close();
   conclude(record_, recorder_.complete());
   record_.events = controller_.takeEvents();  // of the very end

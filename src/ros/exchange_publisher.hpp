@@ -1,4 +1,4 @@
-// Publisher of what a member of the ring answers: one for all topics of which a record is made.
+// Publisher of what a member of the exchange answers: one for all topics of which a record is made.
 #pragma once
 
 #include <ros/ros.h>
@@ -19,19 +19,19 @@ namespace fpc {
 /// Tells the first answers of a node that came back again to those who connect in the seconds after
 /// it and only listen.
 template <typename Msg>
-class RingPublisher {
+class ExchangePublisher {
  public:
   /// `comeback` (of the node) must outlive this.
-  RingPublisher(ros::NodeHandle node, const char* topic, const Comeback& comeback,
-                Audience audience)
+  ExchangePublisher(ros::NodeHandle node, const char* topic, const Comeback& comeback,
+                    Audience audience)
       : comeback_(comeback),
         audience_(std::move(audience)),
         publisher_(node.advertise<Msg>(
             topic, queueOf(ListenerKind::kRecord),
             [this](const ros::SingleSubscriberPublisher& listener) { catchUp(listener); })),
         hearers_(publisher_) {}
-  RingPublisher(const RingPublisher&) = delete;
-  RingPublisher& operator=(const RingPublisher&) = delete;
+  ExchangePublisher(const ExchangePublisher&) = delete;
+  ExchangePublisher& operator=(const ExchangePublisher&) = delete;
 
   /// Whether anybody listens, or may in a moment.
   bool needed() const { return hearers_.any() || comeback_.lately(steadyNow()); }
