@@ -308,7 +308,7 @@ function renderBanner() {
         h("span", { title: top.text },
           h("b", null, top.code),
           (top.signal ? " " + top.signal : "") + ": " + top.text + (top.state === "returned" ? " (gone again)" : "")),
-        remedy(top.code) ? h("span.soft.do", { title: remedy(top.code) }, "Do: " + remedy(top.code)) : null,
+        remedy(top.code) ? h("span.soft", { title: remedy(top.code) }, "Do: " + remedy(top.code)) : null,
         h("button.pad",
           {
             disabled: !may("operate"), title: may("operate") ? "" : "log in as operator",
