@@ -61,12 +61,12 @@ TEST(ClpParams, EachBadFieldIsNamed) {
          p.output_upper = numbers({2.0, 0.0});
        }},
       {"output_penalty", [](ClpParams& p) { p.output_penalty = 0.0; }},
-      {"clp.cost", [](ClpParams& p) { p.target_outputs = {0}; }},
-      {"clp.cost",
+      {"clp.bounds", [](ClpParams& p) { p.target_outputs = {0}; }},
+      {"clp.bounds",
        [](ClpParams& p) {
          p.target_outputs = {0, 0};
        }},
-      {"clp.cost",
+      {"clp.bounds",
        [](ClpParams& p) {
          p.target_outputs = {0, 2};
        }},

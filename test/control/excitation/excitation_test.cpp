@@ -51,7 +51,7 @@ TEST(ExcitationStream, PrbsHoldsEachBitForItsClockAndRepeatsAfterThePeriod) {
     EXPECT_EQ(u[k], u[(k + 3 * 1023) % u.size()]);
     if (k < 3 * 1023) high += u[k] == 800.0 ? 1.0 : 0.0;
   }
-  EXPECT_EQ(high, 3.0 * 64.0);
+  EXPECT_EQ(high, 3.0 * 512.0);
 }
 
 TEST(ExcitationStream, LevelsAndHoldTimesAreUniformInsideTheirLimits) {
