@@ -42,7 +42,7 @@ CASES = {
     "C, own data": ("asp_c", True, "99", "87"),
     "D, held out": ("asp_d", False, "95", "66"),
 }
-PAIRS = [(1, 2), (11, 61), (12, 62), (13, 63)]  # seeds of the load pattern: own record, another
+PAIRS = [(1, 2), (11, 61), (12, 62), (13, 63)]  # seeds of levels and loads: own record, another
 
 
 def asked(*arguments):
