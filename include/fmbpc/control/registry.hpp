@@ -2,6 +2,7 @@
 // is read, how it is made. Everything else learns of controllers here.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
