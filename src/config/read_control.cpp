@@ -96,9 +96,9 @@ bool isThere(const YamlSection& root, const std::string& name) {
 /// The steady state that the optimizer counts from is that of the outputs which the law steers.
 void aimOptimizer(const YamlSection& section, LoopFile& loop) {
   const auto n_y = countOf(loop.plant_info.outputs), n_u = countOf(loop.plant_info.inputs);
-  for (const Eigen::Index i : loop.controller->signalUse(controllerContext(loop)).followed)
-    if (n_y != n_u) loop.clp.target_outputs.push_back(static_cast<int>(i));
-  if (!needsTarget(loop.clp)) loop.clp.target_outputs.clear();
+  if (n_y != n_u && needsTarget(loop.clp))
+    for (const Eigen::Index i : loop.controller->signalUse(controllerContext(loop)).followed)
+      loop.clp.target_outputs.push_back(static_cast<int>(i));
   checked(section, [&] { loop.clp.validate(n_y, n_u); });
 }
 

@@ -10,8 +10,8 @@
 
 namespace fpc {
 
-/// The keys of a loop that take a seed: of its influent's pattern, and of noise wherever it has
-/// any; `noisy`: the outputs have some.
+/// The keys of a loop that take a seed: its own where a pattern, a sensor or noise draws, and that
+/// of the noise inside BSM1; `noisy`: the outputs have some.
 std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy);
 /// Factors or numbers, in the order of `vary`.
 std::vector<double> drawnBy(std::uint64_t seed, const std::vector<Variation>& vary);

@@ -80,9 +80,9 @@ void ExcitationParams::validate(const InputLimits& limits, Eigen::Index n_y) con
   }
 }
 
+// Never all zeros, from which it would not come back.
 ShiftRegister::ShiftRegister(std::uint64_t state)
-    : state_(static_cast<std::uint32_t>((state + kPeriod - 1U) % kPeriod) + 1U) {
-}  // never all zeros
+    : state_(static_cast<std::uint32_t>((state + kPeriod - 1U) % kPeriod) + 1U) {}
 
 bool ShiftRegister::next() {
   const bool out = (state_ & 1U) != 0;
