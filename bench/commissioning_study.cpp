@@ -1,9 +1,13 @@
 // What a commissioning claims of its test and of its model, on processes drawn anew from each seed:
-// bench/commissioning_study [records | time] [CASES OF EACH KIND] [FIRST SEED].
+// bench/commissioning_study [records | time | fuzzy] [CASES OF EACH KIND] [FIRST SEED].
 //   records: how often the gain and the dead time of a process lie within the bounds that are
 //     stated, over records under feedback with coloured noise, a drift and loads;
 //   time: plant time of the designed test beside that of an open-loop staircase whose record gives
-//     bounds as narrow, with the steps that the test ended with.
+//     bounds as narrow, with the steps that the test ended with;
+//   fuzzy: how often a fuzzy model is confirmed, of processes that are linear and of such whose
+//   gain
+//     grows with the output, and its error in a free run on another record, without noise, beside
+//     that of the elements.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,9 +16,11 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/model/local_model.hpp"
 #include "identification/closed_loop_record.hpp"
 #include "identification/process_fit.hpp"
 #include "runtime/commissioning/plant_test.hpp"
+#include "runtime/drawn_record.hpp"
 
 namespace fpc::bench {
 namespace {
@@ -89,18 +95,24 @@ void presentControl(const ProcessElement& e, double& kp, double& ki) {
   }
 }
 
-Covered coveredBy(const Kind& kind, std::uint64_t seed) {
-  auto engine = seededEngine(seed, {35});
-  const ProcessElement e = kind.draw(engine);
-  double kp = 0.0, ki = 0.0;
-  presentControl(e, kp, ki);
-  const double effect = std::abs(e.gain) * (e.integrating ? 20.0 : 1.0), level = 1.0;
+test::Noise drawnNoise(Engine& engine, const ProcessElement& e, double level) {
+  const double effect = std::abs(e.gain) * (e.integrating ? 20.0 : 1.0);
   test::Noise noise;
   noise.measurement = between(engine, 0.02, 0.10) * effect * level;
   noise.coloured = between(engine, 0.0, 0.04) * effect * level;
   noise.drift = between(engine, 0.0, 0.02) * effect * level;
   const double stable = e.integrating ? 1.0 : 1.0 / (e.time_constant + e.second);
   noise.load = between(engine, 0.0, 0.05) * effect * level * stable;
+  return noise;
+}
+
+Covered coveredBy(const Kind& kind, std::uint64_t seed) {
+  auto engine = seededEngine(seed, {35});
+  const ProcessElement e = kind.draw(engine);
+  double kp = 0.0, ki = 0.0;
+  presentControl(e, kp, ki);
+  const double level = 1.0;
+  const test::Noise noise = drawnNoise(engine, e, level);
   const auto settled = e.integrating ? 40.0 : e.settling();
   const auto rows = static_cast<Index>(between(engine, 20.0, 40.0) * settled) + 200;
   const test::Data d = test::record(e, kp, ki, level, noise, std::min<Index>(rows, 2500), seed);
@@ -146,6 +158,73 @@ void studyRecords(int cases, std::uint64_t first) {
                 middle(widths));
     std::fflush(stdout);
   }
+}
+
+// ---- fuzzy models
+
+struct Bent {
+  bool confirmed{};
+  double ratio{1.0};  // of the free runs' errors, the fuzzy model's over the elements'
+};
+
+/// Deviation of y less a free run from rest: an offset is an observer's.
+double freeRunError(const TsModel& model, const test::Data& d) {
+  LocalModel local(model);
+  Vector state(local.stateSize()), next(local.stateSize());
+  const Vector none = Vector::Zero(countOf(model.disturbances));
+  local.restState(d.y.head(1), d.u.row(0).transpose(), none, state);
+  double square = 0.0, sum = 0.0;
+  for (Index k = 0; k + 1 < d.y.size(); ++k) {
+    local.advance(state, d.u.row(k).transpose(), none, next);
+    state = next;
+    const double e = state[local.outputState(0)] - d.y[k + 1];
+    square += e * e;
+    sum += e;
+  }
+  const auto n = static_cast<double>(d.y.size());
+  return std::sqrt(square / n - sum * sum / (n * n));
+}
+
+Bent bentBy(const Kind& kind, double bend, std::uint64_t seed) {
+  auto engine = seededEngine(seed, {38});
+  const ProcessElement e = kind.draw(engine);
+  double kp = 0.0, ki = 0.0;
+  presentControl(e, kp, ki);
+  const double level = 1.0;
+  const test::Noise noise = drawnNoise(engine, e, level);
+  const auto rows = static_cast<Index>(between(engine, 20.0, 40.0) * e.settling()) + 200;
+  const test::Data d =
+      test::record(e, kp, ki, level, noise, std::min<Index>(rows, 2500), seed, bend);
+  Bent result;
+  try {
+    const test::DrawnModels found = test::drawnModels(test::plantRecord(d), 8, seed);
+    result.confirmed = found.hasCurve();
+    if (!result.confirmed) return result;
+    const test::Data other = test::record(e, 0.0, 0.0, level, {}, 1000, seed + 100000, bend);
+    result.ratio =
+        freeRunError(found.curved.model, other) / freeRunError(found.straight.model, other);
+  } catch (const std::exception&) {
+  }
+  return result;
+}
+
+void studyFuzzy(int cases, std::uint64_t first) {
+  std::printf("%-26s %10s %4s %10s %6s %20s\n", "process", "gain grows", "n", "confirmed", "closer",
+              "error, of elements'");
+  for (const Kind* kind : {&kKinds[0], &kKinds[1], &kKinds[3]})
+    for (const double bend : {0.0, 0.4, 0.8}) {
+      int confirmed = 0, closer = 0;
+      std::vector<double> ratios;
+      for (int i = 0; i < cases; ++i) {
+        const Bent found = bentBy(*kind, bend, first + static_cast<std::uint64_t>(i));
+        confirmed += found.confirmed;
+        closer += found.confirmed && found.ratio < 1.0;
+        if (found.confirmed) ratios.push_back(found.ratio);
+      }
+      std::printf("%-26s %10.2g %4d %10d %6d %20.2f\n", kind->name, std::exp(2.0 * bend), cases,
+                  confirmed, closer, middle(ratios));
+      std::fflush(stdout);
+    }
 }
 
 // ---- plant time
@@ -360,6 +439,7 @@ int main(int argc, char** argv) {
   const int cases = argc > 2 ? std::atoi(argv[2]) : 100;
   const auto first = static_cast<std::uint64_t>(argc > 3 ? std::atoi(argv[3]) : 1);
   if (what.empty() || what == "records") fpc::bench::studyRecords(cases, first);
+  if (what.empty() || what == "fuzzy") fpc::bench::studyFuzzy(cases, first);
   if (what.empty() || what == "time") fpc::bench::studyTime(std::max(1, cases / 5), first);
   return 0;
 }

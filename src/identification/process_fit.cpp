@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "base/decompositions.hpp"
+#include "base/order_statistics.hpp"
 #include "base/random.hpp"
 #include "base/statistics.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -22,6 +24,8 @@ constexpr int kFitIterations = 40;
 constexpr double kFreeTerm = 2.0;      // of the noise, by Akaike's criterion
 constexpr double kWorthwhile = 6.0;    // by which Schwarz's criterion must fall
 constexpr double kWorthLead = 18.0;    // likewise, for the best of some hundred starts
+constexpr double kCurveEdge = 0.02;    // of a signal's values lie beyond either end of a curve
+constexpr double kLeastFactor = 0.05;  // at an end of a curve, of that in its middle
 constexpr double kShortestLag = 0.15;  // of a sample
 constexpr double kConverged = 1e-7;    // of the cost, relative
 constexpr double kLowestDamping = 0.1, kHighestDamping = 1e3;
@@ -87,8 +91,34 @@ class Fitter {
     return shortenLags(*best, fit) ? finish(*best) : fit;
   }
 
+  std::optional<GainCurve> curve(const ProcessFit& fit, Index moved) const {
+    const Candidate c = candidateOf(fit);
+    std::vector<Index> signals{-1};
+    for (Index j = 0; j < moved; ++j)
+      if (c.shapes[static_cast<std::size_t>(j)] != kNone) signals.push_back(j);
+    const double confidence = 1.0 - 0.05 / static_cast<double>(signals.size());
+    std::optional<GainCurve> found;
+    double surest = 1.0;
+    for (const Index signal : signals) {
+      const std::optional<GainCurve> curve =
+          curveAlong(c, fit.noise, fit.output, signal, confidence);
+      if (!curve || !(std::abs(curve->change) > surest * curve->bound)) continue;
+      surest = std::abs(curve->change) / curve->bound;
+      found = curve;
+    }
+    return found;
+  }
+
   std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit) const {
     if (static_cast<Index>(rows_.size()) < kFewestRows) return std::nullopt;
+    Candidate c = candidateOf(fit);
+    chooseNoise(c, schwarz());
+    const Vector e = errorsOf(c, residualOf(c));
+    return ProcessNoise{c.noise, std::sqrt(e.squaredNorm() / static_cast<double>(e.size()))};
+  }
+
+ private:
+  Candidate candidateOf(const ProcessFit& fit) const {
     Candidate c;
     c.kind = fit.kind;
     for (const ElementEstimate& e : fit.elements) {
@@ -96,12 +126,137 @@ class Fitter {
       c.shapes.push_back(e.seen ? kFirst : kNone);
       if (e.seen && c.kind == ProcessKind::kUnstable) c.pole = -e.element.time_constant / Ts_;
     }
-    chooseNoise(c, schwarz());
-    const Vector e = errorsOf(c, residualOf(c));
-    return ProcessNoise{c.noise, std::sqrt(e.squaredNorm() / static_cast<double>(e.size()))};
+    return c;
   }
 
- private:
+  // ---- gains that change
+
+  /// Values along which gains may change: those that are known when the next output is not, held
+  /// where they are missing; of an input those that act on it first.
+  Vector along(const Candidate& c, Index signal) const {
+    Vector z = signal < 0 ? y_ : Vector(u_.col(signal));
+    z[0] = firstKnown(z);
+    for (Index k = 1; k < N_; ++k)
+      if (!std::isfinite(z[k])) z[k] = z[k - 1];
+    if (signal < 0) return z;
+    const Index late = sampled(c.elements[static_cast<std::size_t>(signal)], Ts_).delay;
+    Vector delayed = Vector::Constant(N_, z[0]);
+    if (late < N_) delayed.tail(N_ - late) = z.head(N_ - late);
+    return delayed;
+  }
+
+  /// What the inputs do whose gain is multiplied by `factor`, from their means on, behind the
+  /// common denominator of all elements and before the shared pole: as a rule of a model has it.
+  Vector modulated(const Candidate& c, Index signal, const Vector& factor) const {
+    std::vector<double> poles{1.0};
+    Vector drive = Vector::Zero(N_);
+    for (std::size_t j = 0; j < c.elements.size(); ++j)
+      if (c.shapes[j] != kNone) poles = product(poles, sampled(c.elements[j], Ts_).own);
+    for (std::size_t j = 0; j < c.elements.size(); ++j) {
+      if (c.shapes[j] == kNone || (signal >= 0 && signal != static_cast<Index>(j))) continue;
+      const SampledElement s = sampled(c.elements[j], Ts_);
+      std::vector<double> b = s.b;
+      for (std::size_t i = 0; i < c.elements.size(); ++i)
+        if (i != j && c.shapes[i] != kNone) b = product(b, sampled(c.elements[i], Ts_).own);
+      const auto& u = u_.col(static_cast<Index>(j));
+      const double mean = u.mean();
+      for (Index k = 0; k < N_; ++k)
+        for (std::size_t i = 0; i < b.size(); ++i)
+          drive[k] += b[i] * (u[std::max<Index>(k - s.delay - static_cast<Index>(i), 0)] - mean);
+    }
+    drive.array() *= factor.array();
+    double rest = 0.0;  // of a process that has rested before the first row
+    for (const double a : poles) rest += a;
+    const double before = c.kind == ProcessKind::kStable ? drive[0] / rest : 0.0;
+    Vector w(N_);
+    w[0] = before;
+    for (Index k = 1; k < N_; ++k) {
+      w[k] = drive[k - 1];
+      for (std::size_t i = 1; i < poles.size(); ++i) {
+        const Index at = k - static_cast<Index>(i);
+        w[k] -= poles[i] * (at >= 0 ? w[at] : before);
+      }
+    }
+    return w;
+  }
+
+  /// The mean of what effects leave of the output; `otherwise` where a shared pole hides it.
+  double outputAtRest(const Candidate& c, const Vector& factor, double change,
+                      const Vector& changed, double otherwise) const {
+    if (c.kind != ProcessKind::kStable) return otherwise;
+    Vector left = y_ - change * changed;
+    for (std::size_t j = 0; j < c.elements.size(); ++j) {
+      if (c.shapes[j] == kNone) continue;
+      const auto at = static_cast<Index>(j);
+      const double level = c.elements[j].gain * (mean_[at] - start_[j]);
+      left -= factor[at] * (response(c.elements[j], at).array() - level).matrix();
+    }
+    double sum = 0.0;
+    for (const Index k : rows_) sum += left[k];
+    return sum / static_cast<double>(rows_.size());
+  }
+
+  /// Gains and their change by least squares of the prediction errors, elements and noise as
+  /// fitted.
+  std::optional<GainCurve> curveAlong(const Candidate& c, const Vector& noise, double rest,
+                                      Index signal, double confidence) const {
+    const Vector z = along(c, signal);
+    std::vector<double> values(z.begin(), z.end());
+    GainCurve curve;
+    curve.signal = signal;
+    curve.lower = sampleQuantile(values, kCurveEdge);
+    curve.upper = sampleQuantile(std::move(values), 1.0 - kCurveEdge);
+    if (!(curve.upper > curve.lower)) return std::nullopt;
+    const Vector place =
+        ((z.array() - curve.lower) / (curve.upper - curve.lower) - 0.5).min(0.5).max(-0.5);
+    std::vector<std::size_t> seen;
+    for (std::size_t j = 0; j < c.shapes.size(); ++j)
+      if (c.shapes[j] != kNone) seen.push_back(j);
+    const auto n = static_cast<Index>(rows_.size()), gains = static_cast<Index>(seen.size());
+    Matrix X(n, gains + 2);
+    const auto put = [&](Index column, const Vector& effect) {
+      for (Index r = 0; r < n; ++r) X(r, column) = effect[rows_[static_cast<std::size_t>(r)]];
+    };
+    for (Index j = 0; j < gains; ++j) {
+      const std::size_t at = seen[static_cast<std::size_t>(j)];
+      put(j, filteredResponse(response(c.elements[at], static_cast<Index>(at)), noise));
+    }
+    put(gains, filteredResponse(modulated(c, signal, place), noise));
+    X.col(gains + 1).setOnes();
+    const Vector all = filtered(reduced(sharedPole(c)), noise);
+    Vector target(n);
+    for (Index r = 0; r < n; ++r) target[r] = all[rows_[static_cast<std::size_t>(r)]];
+    const Eigen::ColPivHouseholderQR<Matrix> qr = pivotedQrOf(X);
+    if (qr.rank() < X.cols()) return std::nullopt;
+    const Vector theta = solvedBy(qr, target), e = target - X * theta;
+    const Matrix inverse = (X.transpose() * X).ldlt().solve(Matrix::Identity(X.cols(), X.cols()));
+    const double plain =
+        inverse(gains, gains) * e.squaredNorm() / static_cast<double>(n - X.cols());
+    double blocked = 0.0;
+    for (int b = 0; b < params_.blocks; ++b) {
+      const Index from = n * b / params_.blocks, count = n * (b + 1) / params_.blocks - from;
+      const Vector g = X.middleRows(from, count).transpose() * e.segment(from, count);
+      blocked += std::pow(inverse.row(gains).dot(g), 2);
+    }
+    const double freedom = params_.blocks - 1.0;
+    blocked *= params_.blocks / freedom;
+    curve.change = theta[gains];
+    curve.bound = studentBound(confidence, freedom) * std::sqrt(std::max(plain, blocked));
+    curve.factor = Vector::Ones(static_cast<Index>(c.shapes.size()));
+    for (Index j = 0; j < gains; ++j)
+      if (theta[j] > 0.0)
+        curve.factor[static_cast<Index>(seen[static_cast<std::size_t>(j)])] = theta[j];
+    curve.output = outputAtRest(c, curve.factor, theta[gains], modulated(c, signal, place), rest);
+    if (signal >= 0)
+      for (double* end : {&curve.lower, &curve.upper})
+        *end += start_[static_cast<std::size_t>(signal)];
+    auto engine = seededEngine(params_.seed, {8});
+    for (int member = 0; member < params_.ensemble; ++member)
+      curve.ensemble.push_back(curve.change + std::sqrt(std::max(plain, blocked)) *
+                                                  std::clamp(standardNormal(engine), -2.5, 2.5));
+    return curve;
+  }
+
   /// The record does not show that the effects of the inputs come to an end.
   bool endsNowhere(const Candidate& c) const {
     bool any = false;
@@ -928,21 +1083,59 @@ ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_
   return fit;
 }
 
-std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit, const Matrix& inputs,
-                                        const Vector& output, double sample_time_s) {
+namespace {
+
+/// use(Fitter, the fit in its units, scales) of a fit on a record with its columns.
+template <typename Use>
+auto onRecord(const ProcessFit& fit, const Matrix& inputs, const Vector& output,
+              double sample_time_s, const ProcessFitParams& params, const Use& use) {
+  params.validate();
   require(
       inputs.rows() == output.size() && inputs.cols() == static_cast<Index>(fit.elements.size()),
       "record", "a row of inputs per output, and the columns of the fit");
   require(sample_time_s > 0.0, "sample time", "a time > 0");
-  if (output.size() < kFewestRows) return std::nullopt;
   const Scales scales(inputs, output);
   ProcessFit same = fit;
   for (std::size_t j = 0; j < same.elements.size(); ++j)
     same.elements[j].element.gain /= scales.gain(j);
-  auto noise =
-      Fitter(scales.inputs(inputs), scales.output(output), sample_time_s, {}).noiseBeside(same);
-  if (noise) noise->one_step *= scales.y;
-  return noise;
+  return use(Fitter(scales.inputs(inputs), scales.output(output), sample_time_s, params), same,
+             scales);
+}
+
+}  // namespace
+
+double GainCurve::factorAt(Index element, bool upper_end, double changed) const {
+  const double middle = factor[element];
+  if (signal >= 0 && signal != element) return middle;
+  return std::max(middle + (upper_end ? 0.5 : -0.5) * changed, kLeastFactor * middle);
+}
+
+std::optional<GainCurve> gainCurve(const ProcessFit& fit, const Matrix& inputs, Index moved,
+                                   const Vector& output, double sample_time_s,
+                                   const ProcessFitParams& params) {
+  require(moved >= 0 && moved <= inputs.cols(), "moved", "columns of the inputs");
+  if (output.size() < kFewestRows) return std::nullopt;
+  return onRecord(fit, inputs, output, sample_time_s, params,
+                  [moved](const Fitter& fitter, const ProcessFit& same, const Scales& scales) {
+                    auto curve = fitter.curve(same, moved);
+                    if (!curve) return curve;
+                    const double unit = curve->signal < 0 ? scales.y : scales.u[curve->signal];
+                    curve->lower *= unit;
+                    curve->upper *= unit;
+                    curve->output *= scales.y;
+                    return curve;
+                  });
+}
+
+std::optional<ProcessNoise> noiseBeside(const ProcessFit& fit, const Matrix& inputs,
+                                        const Vector& output, double sample_time_s) {
+  if (output.size() < kFewestRows) return std::nullopt;
+  return onRecord(fit, inputs, output, sample_time_s, {},
+                  [](const Fitter& fitter, const ProcessFit& same, const Scales& scales) {
+                    auto noise = fitter.noiseBeside(same);
+                    if (noise) noise->one_step *= scales.y;
+                    return noise;
+                  });
 }
 
 }  // namespace fpc

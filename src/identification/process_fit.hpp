@@ -35,6 +35,22 @@ struct ElementEstimate {
   double gain_bound{}, dead_time_bound{}, time_bound{};  ///< time: of tau_1 + tau_2 + theta - beta
 };
 
+/// How the gains of a process change with a signal of the record: a fuzzy model of two rules that
+/// have the poles of the elements. From `lower` to `upper` of the signal gains change along a line;
+/// beyond they stay.
+struct GainCurve {
+  /// Column of the inputs, whose own gain changes; -1: the output, all gains change.
+  Eigen::Index signal{-1};
+  double lower{}, upper{};
+  double output{};  ///< with this curve, instead of ProcessFit::output
+  Vector factor;    ///< of each element's gain, in the middle
+  double change{},
+      bound{};  ///< of that factor from lower to upper; half width of its 95 % interval
+  std::vector<double> ensemble;  ///< equally likely changes, as ProcessFit::ensemble
+  /// Of the gain of an element at an end of the curve. It keeps its sign, which is what is known.
+  double factorAt(Eigen::Index element, bool upper_end, double changed) const;
+};
+
 struct ProcessFit {
   ProcessKind kind{ProcessKind::kStable};
   std::vector<ElementEstimate> elements;  ///< one per column of the inputs
@@ -45,6 +61,7 @@ struct ProcessFit {
   Vector input;       ///< means of the inputs
   Eigen::Index rows{};
   std::vector<std::vector<ProcessElement>> ensemble;  ///< elements of equally likely processes
+  std::optional<GainCurve> curve;                     ///< see gainCurve()
 };
 
 /// Row k of `inputs` (rows x n) acts from then on, `output` is measured then; NaN where missing
@@ -53,6 +70,15 @@ struct ProcessFit {
 /// @throws InputError for fewer than 30 rows, sizes, or inputs none of which moves.
 ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_time_s,
                       const ProcessFitParams& params = {});
+
+/// The curve whose change the record of a fit is surest of, beside the fitted noise, so that
+/// feedback does not bias it; empty: 95 % bounds leave none, over all signals that were tried
+/// together. Those are the output and the first `moved` columns, which a test moves again and
+/// again: the few moves of a disturbance cannot be told from a drift. Inputs count from their
+/// means.
+std::optional<GainCurve> gainCurve(const ProcessFit& fit, const Matrix& inputs, Eigen::Index moved,
+                                   const Vector& output, double sample_time_s,
+                                   const ProcessFitParams& params = {});
 
 /// What an output does beside its elements.
 struct ProcessNoise {

@@ -44,9 +44,16 @@ struct Data {
   Vector y;
 };
 
-/// A record under a PI whose output carries binary noise of random dwell.
+/// What a process shows whose gain grows e-fold over `range` times 1 / bend of its response; 0: as
+/// it is.
+inline double bent(double response, double bend, double range) {
+  return bend == 0.0 ? response : range / bend * std::expm1(bend * response / range);
+}
+
+/// A record under a PI whose output carries binary noise of random dwell. `bend`: see bent(), with
+/// the effect of the level as range.
 inline Data record(const ProcessElement& element, double kp, double ki, double level,
-                   const Noise& noise, Index rows, std::uint64_t seed) {
+                   const Noise& noise, Index rows, std::uint64_t seed, double bend = 0.0) {
   auto engine = seededEngine(seed, {3});
   Data d{Matrix::Zero(rows, 1), Vector(rows)};
   Response response(element);
@@ -55,7 +62,8 @@ inline Data record(const ProcessElement& element, double kp, double ki, double l
   for (Index k = 0; k < rows; ++k) {
     coloured = 0.9 * coloured + noise.coloured * standardNormal(engine);
     drift += noise.drift * standardNormal(engine);
-    d.y[k] = response.next(d.u, noise.load * standardNormal(engine)) + drift + coloured +
+    const double w = response.next(d.u, noise.load * standardNormal(engine));
+    d.y[k] = bent(w, bend, std::abs(element.gain) * level) + drift + coloured +
              noise.measurement * standardNormal(engine);
     if (left-- <= 0) {
       left = static_cast<int>(3.0 * std::pow(10.0, uniform(engine)));

@@ -15,8 +15,10 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/model/local_model.hpp"
 #include "paths.hpp"
 #include "runtime/commissioning/design.hpp"
+#include "runtime/drawn_record.hpp"
 #include "runtime/run.hpp"
 
 namespace fpc {
@@ -338,6 +340,70 @@ TEST(ProcessModels, OfManySlowLagsKeepTheirGains) {
       effect[r.index] += c[static_cast<Eigen::Index>(k)];
   }
   for (int j = 0; j < 6; ++j) EXPECT_NEAR(effect[j] / own, 1.0 + j, 0.01 * (1.0 + j)) << j;
+}
+
+/// A lag whose gain grows with its output by e^(2 bend), under a PI.
+test::Data bentRecord(double bend) {
+  ProcessElement e;
+  e.gain = 2.0;
+  e.time_constant = 6.0;
+  e.dead_time = 2.0;
+  test::Noise noise;
+  noise.measurement = 0.03;
+  noise.load = 0.01;
+  return test::record(e, 0.3, 0.04, 1.0, noise, 500, 4, bend);
+}
+
+TEST(GainCurve, OfAProcessWhoseGainGrowsMakesAFuzzyModel) {
+  const test::DrawnModels found = test::drawnModels(test::plantRecord(bentRecord(0.8)), 8, 1);
+  ASSERT_TRUE(found.hasCurve());
+  const GainCurve& curve = *found.curved.fits.front().curve;
+  EXPECT_GT(curve.change, curve.bound);
+  ASSERT_EQ(found.curved.ensemble.size(), 8U);
+  LinearPoint rest = modelRest(found.curved.fits, 1);
+  const auto restsAt = [&](const TsModel& model, double input, double load) {
+    LocalModel local(model);
+    Vector state(local.stateSize()), next(local.stateSize());
+    const Vector u = rest.inputs.array() + input, d = Vector::Constant(1, load);
+    local.restState(rest.outputs, u, d, state);
+    for (int k = 0; k < 300; ++k) {
+      local.advance(state, u, d, next);
+      state = next;
+    }
+    return state[local.outputState(0)] - rest.outputs[0];
+  };
+  for (const TsModel* model :
+       {&found.curved.model, &found.curved.ensemble.front(), &found.curved.ensemble.back()}) {
+    ASSERT_EQ(model->submodels.front().rules.size(), 2U);
+    EXPECT_NEAR(restsAt(*model, 0.0, 0.0), 0.0, 1e-9);  // as the elements
+    EXPECT_NEAR(restsAt(*model, 0.0, 0.5), 0.5, 1e-9);
+  }
+  EXPECT_NE(restsAt(found.curved.ensemble.front(), 0.8, 0.0),
+            restsAt(found.curved.ensemble.back(), 0.8, 0.0));
+  // The process rests at 2.5 (exp(0.8 u) - 1): upwards it goes 1.9 times as far.
+  const double ratio =
+      restsAt(found.curved.model, 0.8, 0.0) / -restsAt(found.curved.model, -0.8, 0.0);
+  EXPECT_GT(ratio, 1.4);
+  EXPECT_LT(ratio, 2.6);
+}
+
+TEST(GainCurve, OfALinearProcessIsNone) {
+  const test::DrawnModels found = test::drawnModels(test::plantRecord(bentRecord(0.0)), 8, 1);
+  EXPECT_FALSE(found.hasCurve());
+  EXPECT_EQ(found.curved.model.submodels.front().rules.size(), 1U);
+}
+
+TEST(GainCurve, DoesNotDependOnUnits) {
+  test::Data d = bentRecord(0.8);
+  const GainCurve one = *test::drawnModels(test::plantRecord(d), 2, 1).curved.fits.front().curve;
+  d.y = 1000.0 * d.y.array() + 300.0;
+  d.u *= 1e-3;
+  const GainCurve other = *test::drawnModels(test::plantRecord(d), 2, 1).curved.fits.front().curve;
+  EXPECT_EQ(one.signal, other.signal);
+  EXPECT_NEAR(other.change, one.change, 1e-3);
+  const double unit = one.signal < 0 ? 1000.0 : 1e-3, shift = one.signal < 0 ? 300.0 : 0.0;
+  EXPECT_NEAR(other.lower, shift + unit * one.lower, 1e-3 * unit);
+  EXPECT_NEAR(other.upper, shift + unit * one.upper, 1e-3 * unit);
 }
 
 TEST(WeakDirections, AreCertainWhereTheWholeEnsembleHasTheSameSign) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "base/decompositions.hpp"
 #include "base/files.hpp"
@@ -22,6 +23,7 @@ using Eigen::Index;
 namespace fs = std::filesystem;
 
 constexpr double kWeak = 0.1;         // of the strongest direction's gain
+constexpr double kFar = 1e3;          // of a curve's width: how far its ends reach
 constexpr double kLostAtRest = 1e-4;  // of a denominator's value at rest
 
 TsModel modelNames(const CommissioningBrief& brief) {
@@ -107,6 +109,42 @@ void dropLags(const ProcessFit& fit, double sample_time_s, std::vector<ProcessEl
   }
 }
 
+/// Two rules in the place of one, with other gains at either end of a curve; `change`: of this
+/// model.
+void bend(const GainCurve& curve, double change, int output, Index inputs, const LinearPoint& point,
+          OutputModel& model) {
+  Regressor along{SignalKind::kOutput, output, 0};
+  if (curve.signal >= 0) {  // what acts first
+    along = {SignalKind::kInput, static_cast<int>(curve.signal), std::numeric_limits<int>::max()};
+    for (const Regressor& r : model.regressors)
+      if (r.kind == along.kind && r.index == along.index) along.lag = std::min(along.lag, r.lag);
+  }
+  model.antecedents = {along};
+  const Rule straight = model.rules.front();
+  model.rules.clear();
+  const double width = curve.upper - curve.lower, far = kFar * width;
+  for (const bool upper : {false, true}) {
+    Rule rule = straight;
+    for (std::size_t k = 0; k < model.regressors.size(); ++k) {
+      const Regressor& r = model.regressors[k];
+      const Index element = r.kind == SignalKind::kInput ? r.index : inputs + r.index;
+      if (r.kind == SignalKind::kOutput || element >= curve.factor.size()) continue;
+      double& c = rule.coefficients[static_cast<Index>(k)];
+      const double factor = curve.factorAt(element, upper, change);
+      const double rest =
+          r.kind == SignalKind::kInput ? point.inputs[r.index] : point.disturbances[r.index];
+      rule.offset += (1.0 - factor) * c * rest;
+      c *= factor;
+    }
+    rule.antecedents = {{MembershipShape::kTrapezoidal,
+                         upper ? std::vector<double>{curve.lower, curve.upper, curve.upper + far,
+                                                     curve.upper + 2.0 * far}
+                               : std::vector<double>{curve.lower - 2.0 * far, curve.lower - far,
+                                                     curve.lower, curve.upper}}};
+    model.rules.push_back(std::move(rule));
+  }
+}
+
 TsModel modelOf(TsModel names, const std::vector<ProcessFit>& fits, int member,
                 const std::vector<bool>& loads) {
   std::vector<SampledLinearElement> all;
@@ -139,7 +177,16 @@ TsModel modelOf(TsModel names, const std::vector<ProcessFit>& fits, int member,
   const Index measured = point.disturbances.size();
   point.disturbances.conservativeResize(countOf(names.disturbances));
   point.disturbances.tail(point.disturbances.size() - measured).setZero();
-  return linearModel(names, all, point);
+  TsModel model = linearModel(names, all, point);
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const std::optional<GainCurve>& curve = fits[i].curve;
+    if (!curve) continue;
+    const double change =
+        member < 0 ? curve->change : curve->ensemble[static_cast<std::size_t>(member)];
+    bend(*curve, change, static_cast<int>(i), n_u, point, model.submodels[i]);
+  }
+  model.validate();
+  return model;
 }
 
 OrderedJson elementJson(const ProcessElement& e) {
@@ -246,7 +293,7 @@ LinearPoint modelRest(const std::vector<ProcessFit>& fits, Index inputs) {
   LinearPoint point{Vector(static_cast<Index>(fits.size())), all.head(inputs),
                     all.tail(all.size() - inputs)};
   for (std::size_t i = 0; i < fits.size(); ++i)
-    point.outputs[static_cast<Index>(i)] = fits[i].output;
+    point.outputs[static_cast<Index>(i)] = fits[i].curve ? fits[i].curve->output : fits[i].output;
   return point;
 }
 
@@ -295,17 +342,31 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
     require(moved(fits.back()), "output " + names.outputs[i].name,
             "an input that was seen to move it: test again");
   }
+  const auto withCurves = [&](const ProcessModels& straight) {
+    std::vector<ProcessFit> curved = straight.fits;
+    bool any = false;
+    for (std::size_t i = 0; i < curved.size(); ++i) {
+      params.seed = brief.seed + 1000 * i;
+      curved[i].curve =
+          gainCurve(curved[i], inputs, countOf(names.inputs),
+                    record.outputs().col(static_cast<Index>(i)), names.sample_time_s, params);
+      any = any || curved[i].curve;
+    }
+    if (!any) return straight;
+    const ProcessModels fuzzy = modelsOf(names, curved, members, brief.counted());
+    return holds(fuzzy) ? fuzzy : straight;
+  };
   const ProcessModels found = modelsOf(names, fits, members, brief.counted());
   ProcessModels models = found;
   for (const ProcessKind kind : {ProcessKind::kUnstable, ProcessKind::kIntegrating}) {
-    if (holds(models)) return models;
+    if (holds(models)) return withCurves(models);
     params.kinds.pop_back();
     for (std::size_t i = 0; i < fits.size(); ++i)
       if (fits[i].kind == kind) fits[i] = fitted(i);
     if (!std::all_of(fits.begin(), fits.end(), moved)) return found;
     models = modelsOf(names, fits, members, brief.counted());
   }
-  return holds(models) ? models : found;
+  return holds(models) ? withCurves(models) : found;
 }
 
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
@@ -351,7 +412,7 @@ OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant) {
                           {"one_step", fit.one_step},
                           {"free_run", fit.free_run},
                           {"noise", std::vector<double>(fit.noise.begin(), fit.noise.end())},
-                          {"rest", fit.output},
+                          {"rest", fit.curve ? fit.curve->output : fit.output},
                           {"elements", OrderedJson::array()}};
     for (std::size_t j = 0; j < fit.elements.size(); ++j) {
       const ElementEstimate& e = fit.elements[j];
@@ -366,6 +427,17 @@ OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant) {
       element["ensemble"] = OrderedJson::array();
       for (const auto& member : fit.ensemble) element["ensemble"].push_back(elementJson(member[j]));
       output["elements"].push_back(std::move(element));
+    }
+    if (fit.curve) {
+      const GainCurve& curve = *fit.curve;
+      output["gain_curve"] = {
+          {"along", curve.signal < 0 ? plant.outputs[i].name
+                                     : plant.inputs[static_cast<std::size_t>(curve.signal)].name},
+          {"lower", curve.lower},
+          {"upper", curve.upper},
+          {"factor", std::vector<double>(curve.factor.begin(), curve.factor.end())},
+          {"change", curve.change},
+          {"change_bound", curve.bound}};
     }
     output["inputs_mean"] = std::vector<double>(fit.input.begin(), fit.input.end());
     json["outputs"].push_back(std::move(output));
