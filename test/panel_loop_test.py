@@ -218,6 +218,34 @@ class Fast(unittest.TestCase):
             read.assert_not_called()
         self.whole()
 
+    def test_a_topic_that_is_heard_later_than_another_leaves_no_hole(self):
+        """A panel that comes to a run: the connections to its nodes are not there at once; later a message of one topic is lost."""
+        self.made.fill_tried = -math.inf
+        patch = mock.patch.object(loops, "recorded", lambda *_: [(self.file.names, self.file.rows(0), True)])
+        patch.start()
+        self.addCleanup(patch.stop)
+        for k in range(100, 220):
+            self.now, self.file.samples = self.now + 0.1, k + 1
+            put(self.made, "measurement", messages.Measurement(run_id=RUN, step=k, outputs=[float(k)], disturbances=[3.0], input_applied=[2.0]), PLANT)
+            if k > 102:
+                put(self.made, "tracking", messages.Tracking(run_id=RUN, step=k, setpoint=[4.0], reference=[3.5]), CONTROLLER)
+            if k > 103 and k != 130:
+                put(self.made, "control_action", messages.ControlAction(run_id=RUN, step=k, input=[2.0], source=1), OPTIMIZER)
+            self.made.look(self.now)
+            if k == 102:
+                self.assertNotEqual([], self.made.history.gaps("u"))
+        for column in ("y", "u", "y_setpoint"):
+            self.assertEqual([], self.made.history.gaps(column), column)
+
+    def test_a_column_that_nobody_says_is_not_looked_for_again_and_again(self):
+        self.made.fill_tried = -math.inf
+        with mock.patch.object(loops, "recorded", return_value=[]) as read:
+            for k in range(220):
+                self.now += 0.1
+                put(self.made, "measurement", messages.Measurement(run_id=RUN, step=k, outputs=[float(k)], disturbances=[3.0], input_applied=[2.0]), PLANT)
+                self.made.look(self.now)
+            read.assert_not_called()
+
     def test_who_asks_something_is_answered_by_messages(self):
         self.go(4.0, 100)
         self.assertTrue(self.made.fast())

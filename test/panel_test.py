@@ -455,6 +455,15 @@ class Who(Folder):
         clock.now += access.IDLE + 1
         self.assertIsNone(who.session(key))
 
+    def test_only_wrong_logins_count_as_tries(self):
+        who = access.Access(access.read_users(self.users()), clock=Clock())
+        for _ in range(8):  # a shift that changes, at the one screen of the control room
+            self.assertEqual("", who.login("olga", "correct horse", "here")[1])
+        for i in range(5):  # right ones between give no more wrong ones
+            self.assertIn("wrong", who.login("nobody", "x" * 12, "here")[1])
+            self.assertEqual("too many" in who.login("olga", "correct horse", "here")[1], i == 4)
+        self.assertIn("too many", who.login("nobody", "x" * 12, "here")[1])
+
     def test_sessions_are_bounded_and_end(self):
         clock = Clock()
         who = access.Access(access.read_users(self.users()), clock=clock)

@@ -313,18 +313,22 @@ class Loop:
     # What there was before the panel came, or while it was away: the recorder's own journal.
 
     def _fill(self, now):
-        if self.history is None or self.history.last is None or self.filling or now - self.fill_tried < 5.0 or self.executor is None:
+        if self.history is None or self.history.last is None or not self.info.outputs or self.filling or now - self.fill_tried < 5.0 or self.executor is None:
             return
         self.fill_tried = now
-        name = self.info.outputs[0].name if self.info.outputs else None
         begun = self.history.first > 0 and not self.filled
         # Not the newest samples of a run that goes on: those are on their way. Of a fast loop, not what its journal gives next.
         newest = self.followed if self.fast() else self.step if self.over() else self.step - 20
-        first = None if name is None else 0 if begun else next((a for a, _ in self.history.gaps(name) if self.filled < a < newest), None)
+        first = 0 if begun else min((a for name in self._of_each_topic() for a, b in self.history.gaps(name) if self.filled < a and (a if self.over() else b) < newest), default=None)
         if first is None:
             return
         self.filling = True
         self.executor.submit(self._fill_from, self.run_id, first * self.info.sample_time_s / 3600.0)
+
+    def _of_each_topic(self):
+        """A column of each topic of samples: what is heard of one may be missed of another."""
+        outputs, inputs = [[s.name for s in signals[:1]] for signals in (self.info.outputs, self.info.inputs)]
+        return outputs + [n + "_setpoint" for n in outputs] + inputs
 
     def _fill_from(self, run_id, since_h):
         try:
