@@ -202,12 +202,15 @@ TEST(Commissioning, AKindThatThePresentControlRefutesGivesWayToAnother) {
 
 /// One element from heat to T, and likely models with these parts of its gain.
 ProcessModels lagsOf(const CommissioningBrief& brief, ProcessKind kind,
-                     const ProcessElement& element, const std::vector<double>& parts) {
+                     const ProcessElement& element, const std::vector<double>& parts,
+                     const ProcessElement& of_inlet = {}) {
   ProcessFit fit;
   fit.kind = kind;
   ElementEstimate heat, inlet;
   heat.element = element;
   heat.seen = true;
+  inlet.element = of_inlet;
+  inlet.seen = of_inlet.gain != 0.0;
   fit.elements = {heat, inlet};
   fit.one_step = fit.free_run = 0.05;
   fit.output = 42.0;
@@ -263,6 +266,20 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   EXPECT_FALSE(none.offers_law || none.offers_pi);
   EXPECT_FALSE(std::isfinite(none.law_figures.tuned) || std::isfinite(none.ratio));
   EXPECT_NE(none.pi.find("kp:"), std::string::npos);
+}
+
+/// A law that feeds the inlet forward is worth more beside the PI, which sees its effect only.
+TEST(Design, TriesTheDisturbancesThatAreMeasured) {
+  const std::string folder = folderOf("inlet", kTankBrief, "tank.yaml", "extends: heated_tank\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const auto ratioAt = [&](double move) {
+    ProcessModels models = lagsOf(brief, ProcessKind::kStable, {2.5, 240.0, 0.0, 0.0, 60.0, false},
+                                  {1.1, 0.9, 1.05, 0.95}, {1.0, 240.0, 0.0, 0.0, 60.0, false});
+    models.disturbance_moves = Vector::Constant(1, move);
+    return designed(brief, folder, models, 2.0).ratio;
+  };
+  const double still = ratioAt(0.0);
+  EXPECT_LT(ratioAt(6.0), 0.95 * still);
 }
 
 TEST(ProcessModels, TakeTheirNoiseFromTheWatch) {
@@ -534,7 +551,7 @@ double integralTimeOf(const std::string& name, double Ts) {
                                 {1.1, 0.9, 1.05, 0.95});
   models.fits.front().one_step = 1e-3;
   const YAML::Node law =
-      YAML::Load(designed(brief, folder, models, 2.0, 24).pi)["controller"]["loops"][0];
+      YAML::Load(designed(brief, folder, models, 2.0, 12).pi)["controller"]["loops"][0];
   return law["kp"].as<double>() / law["ki_per_h"].as<double>();
 }
 

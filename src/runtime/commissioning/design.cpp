@@ -60,6 +60,7 @@ struct Pairing {
 struct Outline {
   Vector y_scale, u_range;  // step of each setpoint; range of each input
   Vector load;              // shift of each output, of integrators per settling time
+  Vector disturbance;       // step of each one that is measured, no larger than was seen
   Matrix gain;              // likeliest; of integrators per settling time
   double settling{};
   std::vector<Pairing> pairs;
@@ -140,13 +141,15 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
         o.settling =
             std::max(o.settling, fit.elements[static_cast<std::size_t>(j)].element.settling());
   o.settling = std::max(o.settling, 3.0 * Ts);
+  const auto effect = [&](Index i, Index from) {
+    const ProcessElement& e =
+        models.fits[static_cast<std::size_t>(i)].elements[static_cast<std::size_t>(from)].element;
+    return e.integrating ? e.gain * o.settling : e.gain;
+  };
   o.gain.setZero(n_y, n_u);
   for (Index i = 0; i < n_y; ++i)
-    for (Index j = 0; j < n_u; ++j) {
-      const ProcessElement& e =
-          models.fits[static_cast<std::size_t>(i)].elements[static_cast<std::size_t>(j)].element;
-      o.gain(i, j) = e.integrating ? e.gain * o.settling : e.gain;
-    }
+    for (Index j = 0; j < n_u; ++j) o.gain(i, j) = effect(i, j);
+  o.disturbance = models.disturbance_moves;
   o.y_scale.resize(n_y);
   o.load = kLoadReach * (o.gain.cwiseAbs() * o.u_range.asDiagonal()).rowwise().maxCoeff();
   for (Index i = 0; i < n_y; ++i) {
@@ -160,6 +163,16 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
     o.y_scale[i] = std::min(kStepRoom * room, kStepReach * reach);
     if (!(o.y_scale[i] > 0.0)) o.y_scale[i] = kStepRoom * room;
     o.load[i] = std::min(o.load[i], kLoadRoom * room);
+    for (Index k = 0; k < o.disturbance.size(); ++k) {
+      const double shift = std::abs(effect(i, n_u + k)) * o.disturbance[k];
+      if (brief.held[static_cast<std::size_t>(i)] && shift > kLoadRoom * room)
+        o.disturbance[k] *= kLoadRoom * room / shift;
+    }
+  }
+  for (Index k = 0; k < o.disturbance.size(); ++k) {
+    double most = 0.0;
+    for (Index i = 0; i < n_y; ++i) most = std::max(most, std::abs(effect(i, n_u + k)));
+    if (!(most > 0.0)) o.disturbance[k] = 0.0;
   }
   o.pairs = pairsOf(brief, o.y_scale.cwiseInverse().asDiagonal() * o.gain * o.u_range.asDiagonal());
   const double calm = std::max<double>(std::ceil(kCalm * o.settling / Ts), kFewestRun);
@@ -513,7 +526,8 @@ class Designer {
 
   LoopFile loopOf(const std::string& text) const { return parseLoop(text, brief_.loop.name); }
 
-  /// The loop on one model, asked for steps of all that is held, then for loads.
+  /// The loop on one model, asked for steps of all that is held, then under disturbances that are
+  /// measured, one after the other, then under loads.
   LoopFile scenario(const LoopFile& given, const TsModel& model) const {
     LoopFile loop =
         onModel(given, model, modelRest(models_.fits, countOf(brief_.loop.plant_info.inputs)));
@@ -531,13 +545,26 @@ class Designer {
       loop.setpoint.schedule.push_back({at(stretch++), asked, 0.0});
     }
     loop.setpoint.schedule.push_back({at(stretch++), rest, 0.0});
+    const auto offset = [&](const std::string& name, double value) {
+      Command command;
+      command.name = {name};
+      command.value = {value};
+      command.mode = CommandMode::kOffset;
+      loop.simulation.disturbance_commands.push_back({at(stretch), command});
+    };
+    for (Index k = 0; k < outline_.disturbance.size(); ++k) {
+      if (!(outline_.disturbance[k] > 0.0)) continue;
+      const std::string& name =
+          brief_.loop.plant_info.disturbances[static_cast<std::size_t>(k)].name;
+      offset(name, outline_.disturbance[k]);
+      ++stretch;
+      offset(name, 0.0);
+    }
     for (Index i = 0; i < rest.size(); ++i) {
       if (!brief_.held[static_cast<std::size_t>(i)]) continue;
-      Command command;
-      command.name = {loadName(brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name)};
-      command.value = {outline_.load[i] * loadUnit(i)};
-      command.mode = CommandMode::kOffset;
-      loop.simulation.disturbance_commands.push_back({at(stretch++), command});
+      offset(loadName(brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name),
+             outline_.load[i] * loadUnit(i));
+      ++stretch;
     }
     loop.simulation.samples =
         static_cast<std::uint32_t>(stretch * outline_.stretch + outline_.stretch / 10);

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr double kWeak = 0.1;         // of the strongest direction's gain
 constexpr double kFar = 1e3;          // of a curve's width: how far its ends reach
+constexpr double kRare = 0.02;        // share of the values of a disturbance at either end
 constexpr double kLostAtRest = 1e-4;  // of a denominator's value at rest
 
 TsModel modelNames(const CommissioningBrief& brief) {
@@ -253,6 +254,17 @@ Vector vectorOf(const std::vector<double>& values) {
   return Eigen::Map<const Vector>(values.data(), countOf(values));
 }
 
+Vector movesOf(const Matrix& disturbances) {
+  Vector moves = Vector::Zero(disturbances.cols());
+  for (Index k = 0; k < moves.size(); ++k) {
+    std::vector<double> seen;
+    for (const double value : disturbances.col(k))
+      if (std::isfinite(value)) seen.push_back(value);
+    if (!seen.empty()) moves[k] = 0.5 * (quantile(seen, 1.0 - kRare) - quantile(seen, kRare));
+  }
+  return moves;
+}
+
 /// What toJson() made of them.
 std::vector<ProcessFit> fitsOf(const OrderedJson& json) {
   std::vector<ProcessFit> fits;
@@ -304,6 +316,7 @@ ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits
   models.model = modelOf(names, fits, -1, loads);
   for (int member = 0; member < members; ++member)
     models.ensemble.push_back(modelOf(names, fits, member, loads));
+  models.disturbance_moves = Vector::Zero(countOf(names.disturbances));
   return models;
 }
 
@@ -342,6 +355,10 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
     require(moved(fits.back()), "output " + names.outputs[i].name,
             "an input that was seen to move it: test again");
   }
+  const auto seen = [&](ProcessModels models) {
+    models.disturbance_moves = movesOf(record.disturbances());
+    return models;
+  };
   const auto withCurves = [&](const ProcessModels& straight) {
     std::vector<ProcessFit> curved = straight.fits;
     bool any = false;
@@ -359,14 +376,14 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
   const ProcessModels found = modelsOf(names, fits, members, brief.counted());
   ProcessModels models = found;
   for (const ProcessKind kind : {ProcessKind::kUnstable, ProcessKind::kIntegrating}) {
-    if (holds(models)) return withCurves(models);
+    if (holds(models)) return seen(withCurves(models));
     params.kinds.pop_back();
     for (std::size_t i = 0; i < fits.size(); ++i)
       if (fits[i].kind == kind) fits[i] = fitted(i);
-    if (!std::all_of(fits.begin(), fits.end(), moved)) return found;
+    if (!std::all_of(fits.begin(), fits.end(), moved)) return seen(found);
     models = modelsOf(names, fits, members, brief.counted());
   }
-  return holds(models) ? withCurves(models) : found;
+  return seen(holds(models) ? withCurves(models) : found);
 }
 
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
@@ -442,6 +459,8 @@ OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant) {
     output["inputs_mean"] = std::vector<double>(fit.input.begin(), fit.input.end());
     json["outputs"].push_back(std::move(output));
   }
+  json["disturbance_moves"] =
+      std::vector<double>(models.disturbance_moves.begin(), models.disturbance_moves.end());
   return json;
 }
 
@@ -458,7 +477,9 @@ ProcessModels readModels(const std::string& folder) {
   std::ifstream stream(file);
   require(static_cast<bool>(stream), file, "the file that stage model writes");
   try {
-    models.fits = fitsOf(OrderedJson::parse(stream));
+    const OrderedJson json = OrderedJson::parse(stream);
+    models.fits = fitsOf(json);
+    models.disturbance_moves = vectorOf(json.at("disturbance_moves"));
   } catch (const nlohmann::json::exception& e) {
     throw InputError(file + ": expected what stage model writes (" + e.what() + ")");
   }

@@ -23,10 +23,11 @@ struct ProcessModels {
   std::vector<ProcessFit> fits;   ///< one per output: elements of inputs, then disturbances
   TsModel model;                  ///< the likeliest
   std::vector<TsModel> ensemble;  ///< equally likely ones
+  Vector disturbance_moves;       ///< n_d measured ones: half of what each went through
 };
 
 /// `names` says name, sample time and signals; `members` of each fit's ensemble make one. `loads`:
-/// n_y, outputs that have one.
+/// n_y, outputs that have one. Disturbances that are measured have not moved.
 ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members,
                        const std::vector<bool>& loads);
 
