@@ -28,7 +28,7 @@ def closure(roots):
 
 def named():
     """In the pages, and in the sources of the examples."""
-    pages = [TOP / "README.md", *(TOP / "docs").glob("*.md"), *(p for p in (TOP / "examples").rglob("*") if p.is_file())]
+    pages = [TOP / "README.md", *(TOP / "docs").glob("*.md"), *(p for p in (TOP / "examples").rglob("*") if p.is_file() and p.suffix != ".pyc")]
     return {header for page in pages for header in NAMED.findall(page.read_text())}
 
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "config/model_file_parts.hpp"
+#include "config/range.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/model/model_match.hpp"
 #include "model/regressor_text.hpp"
@@ -25,20 +26,10 @@ std::vector<SignalInfo> readSignals(YamlSection& top, const std::string& key, bo
   return signals;
 }
 
-void readRange(YamlSection& ranges, SignalInfo& signal) {
-  if (!ranges.has(signal.name)) return;
-  std::vector<double> limits;
-  ranges.numbers(signal.name, limits);
-  if (limits.size() != 2 || !(limits[0] < limits[1]))
-    ranges.fail(signal.name, "[lower, upper] with lower < upper");
-  signal.lower = limits[0];
-  signal.upper = limits[1];
-}
-
 void readRanges(YamlSection& top, TsModel& model) {
   YamlSection ranges = top.section("ranges");
   for (auto* signals : {&model.outputs, &model.inputs, &model.disturbances})
-    for (auto& signal : *signals) readRange(ranges, signal);
+    for (auto& signal : *signals) readRange(ranges, signal.name, signal.lower, signal.upper);
   ranges.finish();
 }
 

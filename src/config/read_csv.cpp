@@ -2,19 +2,13 @@
 #include <algorithm>
 
 #include "base/time_unit.hpp"
+#include "config/range.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 
 namespace fpc {
 namespace {
-
-/// Other cells are missing ones.
-void readPlausible(YamlSection& section, CsvChannel& channel) {
-  if (section.interval("plausible", channel.lower, channel.upper, kFinite) &&
-      !(channel.lower < channel.upper))
-    section.fail("plausible", "[lower, upper] with lower < upper");
-}
 
 void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
                      const std::vector<std::string>& names) {
@@ -34,7 +28,7 @@ void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
     channel.number("offset", value.offset, kFinite);
     channel.number("mean", value.mean, kFinite);
     if (channel.has("mean") && value.mean == 0.0) channel.fail("mean", "a number other than 0");
-    readPlausible(channel, value);
+    readRange(channel, "plausible", value.lower, value.upper, kFinite);  // others: missing cells
     if (channel.has("mean") && (channel.has("scale") || channel.has("offset")))
       channel.fail("mean", "either mean, or scale and offset");
     channel.finish();

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/yaml_node.hpp"
+#include "config/range.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
@@ -37,8 +38,7 @@ void readPattern(YamlSection& section, PatternParams& params,
     value.name = name;
     for (const char* key : {"shape", "range", "mean"}) need(channel, key, "a value");
     channel.oneOf("shape", value.shape, {"flow", "load"});
-    channel.interval("range", value.lower, value.upper, kFinite);
-    if (!(value.lower < value.upper)) channel.fail("range", "[lower, upper] with lower < upper");
+    readRange(channel, "range", value.lower, value.upper, kFinite);
     channel.number("mean", value.mean, {value.lower, value.upper, true});
     channel.finish();
     params.channels.push_back(std::move(value));

@@ -1,6 +1,7 @@
 // Plant type `model`: plant.model is a model file, plant.ranges where its signals can be.
 #include "config/design_library.hpp"
 #include "config/identified_file.hpp"
+#include "config/range.hpp"
 #include "config/read.hpp"
 
 namespace fpc {
@@ -13,12 +14,9 @@ std::vector<SignalInfo> readRanges(YamlSection& plant, const TsModel& model) {
   std::vector<SignalInfo> ranges;
   for (const auto* group : {&model.outputs, &model.inputs, &model.disturbances})
     for (const SignalInfo& signal : *group) {
-      if (!section.has(signal.name)) continue;
-      std::vector<double> limits;
-      section.numbers(signal.name, limits, kFinite);
-      if (limits.size() != 2 || !(limits[0] < limits[1]))
-        section.fail(signal.name, "[lower, upper] with lower < upper");
-      ranges.push_back({signal.name, signal.unit, limits[0], limits[1]});
+      SignalInfo range = signal;
+      if (readRange(section, signal.name, range.lower, range.upper, kFinite))
+        ranges.push_back(std::move(range));
     }
   section.finish();
   return ranges;

@@ -5,6 +5,7 @@
 
 #include "base/time_unit.hpp"
 #include "base/yaml_node.hpp"
+#include "config/range.hpp"
 #include "config/read.hpp"
 #include "config/read_known.hpp"
 #include "config/structure_file.hpp"
@@ -47,9 +48,7 @@ std::vector<StructureSignal> readSignals(YamlSection& top, const std::string& ke
     YamlSection body = section.section(name);
     body.text("column", signal.column);
     body.text("unit", signal.info.unit);
-    const bool known = body.interval("plausible", signal.info.lower, signal.info.upper);
-    if (!(signal.info.lower < signal.info.upper))
-      body.fail("plausible", "[lower, upper] with lower < upper");
+    const bool known = readRange(body, "plausible", signal.info.lower, signal.info.upper);
     if (!known && body.has("implausible")) body.fail("implausible", "the key plausible with it");
     readOption(body, "implausible", signal.implausible);
     body.finish();

@@ -34,7 +34,7 @@ TEST_F(ModelPlantLoop, RangesOfTheFileGoOverThoseOfTheData) {
   expectWords(errorOf([&] { readLoop(write("b.yaml", onModel(", ranges: {q_x: [0, 1]}"))); }),
               {"b.yaml:1", "plant.ranges.q_x", "unknown"});
   expectWords(errorOf([&] { readLoop(write("c.yaml", onModel(", ranges: {q_c: [2, 1]}"))); }),
-              {"c.yaml:1", "plant.ranges.q_c", "lower < upper"});
+              {"c.yaml:1", "plant.ranges.q_c", "[2, 1]"});
 }
 
 TEST_F(ModelPlantLoop, WhatIsNoModelIsNamed) {
