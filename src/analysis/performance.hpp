@@ -16,7 +16,7 @@ struct OutputIndices {
   double itae{};             ///< sum t |e|, t in h
   double itse{};             ///< sum t e^2, t in h
   double rmse{};             ///< sqrt(ise / samples in the sum), N + 1 if none was rejected
-  double ise_reference{};    ///< sum (y_r - y)^2
+  double ise_reference{};    ///< sum (y_r - y)^2, of samples with a reference
   std::uint64_t rejected{};  ///< measurements that are in none of the sums
 };
 

@@ -24,12 +24,15 @@ void RunningOutput::add(double y, double setpoint, double reference) {
   sums_.iae += std::abs(e);
   sums_.itae += t * std::abs(e);
   sums_.itse += t * e * e;
+  if (std::isnan(reference)) return;
+  ++referred_;
   sums_.ise_reference += e_reference * e_reference;
 }
 
 OutputIndices RunningOutput::indices() const {
   OutputIndices result = sums_;
   const std::uint64_t counted = samples_ - sums_.rejected;
+  if (referred_ == 0 && samples_ > 0) result.ise_reference = std::nan("");
   if (counted > 0) result.rmse = std::sqrt(sums_.ise / static_cast<double>(counted));
   if (counted > 0 || samples_ == 0) return result;
   for (double* sum :

@@ -20,7 +20,7 @@ class RunningOutput {
 
  private:
   double sample_time_h_;
-  std::uint64_t samples_{};
+  std::uint64_t samples_{}, referred_{};  // referred: with a reference
   OutputIndices sums_;
 };
 

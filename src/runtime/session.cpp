@@ -76,8 +76,6 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   seen_.outputs = Vector::Zero(countOf(plant_.outputs));
   seen_.disturbances = Vector::Zero(countOf(plant_.disturbances));
   seen_.input_applied = answer_.base.input = last_input_;
-  answer_.tracking.reference = setpoint_.present();
-  if (!controller_->followsSetpoint()) answer_.tracking.reference.setConstant(std::nan(""));
   noteNeeds();
 }
 
@@ -132,7 +130,12 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   if (arrival == Arrival::kResync)
     arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
   if (arrival == Arrival::kNewRun) beginAnew();
-  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
+  if (arrival != Arrival::kNext) untouched_ = step == 0;
+  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) {
+    setpoint_.anchor(m.header);
+    const Eigen::Index n_y = countOf(plant_.outputs);
+    answer_.tracking.reference.setConstant(n_y, std::nan(""));  // till a law acts
+  }
 
   answer_.base.header = answer_.tracking.header = m.header;
   answer_.has_action = !m.final;
@@ -169,6 +172,7 @@ void ControllerSession::process(const Measurement& m) {
     keep(accepted);
   else
     interrupt();
+  untouched_ = untouched_ && !unreleased_ && !manual_ && takes_actions_;
   if (unreleased_) {
     hold(m, {EventCode::kOperatorUnknown});
     interruption_ = "released";
@@ -184,6 +188,7 @@ void ControllerSession::process(const Measurement& m) {
   } else if (verdict == Verdict::kFallback) {
     fallBack(m, plausibility_.notice());
     interruption_ = kDoubted;
+    untouched_ = false;
   } else if (!usable) {
     hold(m, plausibility_.notice());
     interruption_ = finite ? kDoubted : kNotFinite;
@@ -253,13 +258,20 @@ void ControllerSession::watchReaction(const Measurement& m) {
 void ControllerSession::runLaw(const Measurement& m) {
   const bool restarts = interruption_ != nullptr || !arrival_reason_.empty();
   const Measurement& of_law = restarts ? withoutTest(m) : m;
+  const bool begins = std::exchange(untouched_, false);
   if (restarts) {
     reset_reason_ = arrival_reason_;
     if (interruption_ != nullptr) {
       if (!reset_reason_.empty()) reset_reason_ += "; ";
       reset_reason_ += interruption_;
     }
-    controller_->reset(of_law);
+    if (begins && m.header.step > 0) {
+      Measurement begin = of_law;
+      begin.header.step = 0;
+      controller_->reset(begin);
+    } else {
+      controller_->reset(of_law);
+    }
     transfer_.reset(other_hand_ || transfer_.active());
     other_hand_ = false;
     interruption_ = nullptr;
@@ -268,7 +280,8 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (std::exchange(gains_due_, false)) lookAtGains(m);
   output_.begin();
   controller_->step(of_law, setpoint_, output_);
-  if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
+  const bool refers = output_.reference.size() == m.outputs.size();
+  answer_.tracking.reference = refers ? output_.reference : answer_.tracking.setpoint;
   if (!output_.ok) return hold(m, {});
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
     return hold(m, {EventCode::kLawFailed});

@@ -66,7 +66,8 @@ enum class Receipt {
 ///   ...): answered with the last applied input, source held, or from what is accepted
 ///   instead; for longer than hold_samples with the fallback. The controller is reset,
 ///   bumplessly, at the next sample that it gets;
-/// - first sample, gap, new run: the controller is reset; otherwise it just steps.
+/// - first sample, gap, new run: the controller is reset; otherwise it just steps. A run whose
+///   first samples are not accepted begins with the one that is, as it would at sample 0.
 /// Move limits count from the applied input, but for one with an offset, which the law, a person
 /// and a fallback move on from the last command (MoveOrigin): they see that one as applied.
 /// After another hand had the inputs the plant gets in the first sample what it gets already, and
@@ -234,6 +235,7 @@ class ControllerSession {
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
   bool takes_actions_{true}, leads_an_optimizer_{false}, other_hand_{false};
   bool manual_asked_{false}, recipe_asked_{false}, carries_{false};
+  bool untouched_{false};  // since its sample 0 the run waits for a measurement to begin with
   std::optional<bool> adapt_;
   Settings settings_;
 };

@@ -44,14 +44,11 @@ TEST(LostSamples, WhatALawExpectsIsWhatALateAnalyserWouldHaveShown) {
   }
 }
 
-/// In the file of the loop: 0.00170 and 0.00183 without a loss. Seed 1 loses sample 0 at 10 %:
-/// under cstr_tracking_rate it costs nothing but itself, under cstr_tracking_lags 1.48, more than
-/// the aim.
+/// In the file of the loop: 0.00170 and 0.00183 without a loss. Seed 1 loses sample 0 at 10 %.
 TEST(LostSamples, ALateReactorUnderAFastLawHardlySeesThem) {
   for (const char* name : {"cstr_tracking_lags", "cstr_tracking_rate"}) {
     const double whole = iseOf(name, "0", "1");
     for (const std::string seed : {"1", "2", "3", "4", "5"}) {
-      if (seed == "1" && std::string(name) == "cstr_tracking_lags") continue;
       EXPECT_LT(iseOf(name, "0.05", seed), 1.1 * whole) << name << seed;
       EXPECT_LT(iseOf(name, "0.1", seed), 1.3 * whole) << name << seed;
     }
