@@ -1098,6 +1098,7 @@ auto onRecord(const ProcessFit& fit, const Matrix& inputs, const Vector& output,
   ProcessFit same = fit;
   for (std::size_t j = 0; j < same.elements.size(); ++j)
     same.elements[j].element.gain /= scales.gain(j);
+  same.output /= scales.y;
   return use(Fitter(scales.inputs(inputs), scales.output(output), sample_time_s, params), same,
              scales);
 }

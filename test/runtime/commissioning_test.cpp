@@ -410,6 +410,26 @@ TEST(GainCurve, OfALinearProcessIsNone) {
   EXPECT_EQ(found.curved.model.submodels.front().rules.size(), 1U);
 }
 
+/// Of a process that does not rest by itself the record says where it was, in the output's unit.
+TEST(GainCurve, LeavesAnUnstableProcessWhereItWas) {
+  const Eigen::Index rows = 800;
+  test::Data d{Matrix::Zero(rows, 1), Vector::Zero(rows)};
+  auto engine = seededEngine(4, {3});
+  double y = 0.0, level = 1.0;
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    if (k % 7 == 0 && standardNormal(engine) > 0.0) level = -level;
+    d.y[k] = 3.0 + 0.01 * (y + 0.003 * standardNormal(engine));
+    d.u(k, 0) = level - 4.0 * y;
+    y = 1.01 * y + 0.05 * std::exp(1.5 * y) * d.u(k, 0);
+  }
+  const test::DrawnModels found = test::drawnModels(test::plantRecord(d), 2, 1);
+  ASSERT_TRUE(found.hasCurve());
+  EXPECT_EQ(found.curved.fits.front().kind, ProcessKind::kUnstable);
+  const double rest = modelRest(found.straight.fits, 1).outputs[0];
+  EXPECT_NEAR(rest, 3.0, 0.01);
+  EXPECT_NEAR(modelRest(found.curved.fits, 1).outputs[0], rest, 1e-9);
+}
+
 TEST(GainCurve, DoesNotDependOnUnits) {
   test::Data d = bentRecord(0.8);
   const GainCurve one = *test::drawnModels(test::plantRecord(d), 2, 1).curved.fits.front().curve;
