@@ -455,14 +455,21 @@ class Who(Folder):
         clock.now += access.IDLE + 1
         self.assertIsNone(who.session(key))
 
-    def test_only_wrong_logins_count_as_tries(self):
-        who = access.Access(access.read_users(self.users()), clock=Clock())
-        for _ in range(8):  # a shift that changes, at the one screen of the control room
-            self.assertEqual("", who.login("olga", "correct horse", "here")[1])
+    def test_of_one_address_only_wrong_logins_count_as_tries(self):
+        path = self.users()
+        shift = [f"operator_{i}" for i in range(8)]  # that changes, at the one screen of the control room
+        for name in shift:
+            access.write_user(path, name, "operate", password="correct horse")
+        who = access.Access(access.read_users(path), clock=Clock())
+        for name in shift:
+            self.assertEqual("", who.login(name, "correct horse", "here")[1])
         for i in range(5):  # right ones between give no more wrong ones
-            self.assertIn("wrong", who.login("nobody", "x" * 12, "here")[1])
-            self.assertEqual("too many" in who.login("olga", "correct horse", "here")[1], i == 4)
-        self.assertIn("too many", who.login("nobody", "x" * 12, "here")[1])
+            self.assertIn("wrong", who.login(f"nobody_{i}", "x" * 12, "here")[1])
+            self.assertEqual("too many" in who.login(shift[i], "correct horse", "here")[1], i == 4)
+        for _ in range(5):  # nobody fills the list of sessions
+            answer = who.login("olga", "correct horse", "there")
+        self.assertEqual("", answer[1])
+        self.assertIn("too many", who.login("olga", "correct horse", "there")[1])
 
     def test_sessions_are_bounded_and_end(self):
         clock = Clock()

@@ -130,7 +130,7 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   if (arrival == Arrival::kResync)
     arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
   if (arrival == Arrival::kNewRun) beginAnew();
-  if (arrival != Arrival::kNext) untouched_ = step == 0;
+  if (arrival != Arrival::kNext) begins_ = step == 0;
   if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) {
     setpoint_.anchor(m.header);
     const Eigen::Index n_y = countOf(plant_.outputs);
@@ -172,7 +172,6 @@ void ControllerSession::process(const Measurement& m) {
     keep(accepted);
   else
     interrupt();
-  untouched_ = untouched_ && !unreleased_ && !manual_ && takes_actions_;
   if (unreleased_) {
     hold(m, {EventCode::kOperatorUnknown});
     interruption_ = "released";
@@ -188,7 +187,6 @@ void ControllerSession::process(const Measurement& m) {
   } else if (verdict == Verdict::kFallback) {
     fallBack(m, plausibility_.notice());
     interruption_ = kDoubted;
-    untouched_ = false;
   } else if (!usable) {
     hold(m, plausibility_.notice());
     interruption_ = finite ? kDoubted : kNotFinite;
@@ -258,20 +256,16 @@ void ControllerSession::watchReaction(const Measurement& m) {
 void ControllerSession::runLaw(const Measurement& m) {
   const bool restarts = interruption_ != nullptr || !arrival_reason_.empty();
   const Measurement& of_law = restarts ? withoutTest(m) : m;
-  const bool begins = std::exchange(untouched_, false);
+  const bool begins = std::exchange(begins_, false) && !other_hand_;
   if (restarts) {
     reset_reason_ = arrival_reason_;
     if (interruption_ != nullptr) {
       if (!reset_reason_.empty()) reset_reason_ += "; ";
       reset_reason_ += interruption_;
     }
-    if (begins && m.header.step > 0) {
-      Measurement begin = of_law;
-      begin.header.step = 0;
-      controller_->reset(begin);
-    } else {
-      controller_->reset(of_law);
-    }
+    Measurement start = of_law;
+    if (begins) start.header.step = 0;
+    controller_->reset(start);
     transfer_.reset(other_hand_ || transfer_.active());
     other_hand_ = false;
     interruption_ = nullptr;

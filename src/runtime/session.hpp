@@ -235,7 +235,7 @@ class ControllerSession {
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
   bool takes_actions_{true}, leads_an_optimizer_{false}, other_hand_{false};
   bool manual_asked_{false}, recipe_asked_{false}, carries_{false};
-  bool untouched_{false};  // since its sample 0 the run waits for a measurement to begin with
+  bool begins_{false};  // its sample 0 came, and the law has not acted yet
   std::optional<bool> adapt_;
   Settings settings_;
 };

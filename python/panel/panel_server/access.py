@@ -121,22 +121,20 @@ class Access:
     def __init__(self, users, anonymous="view", clock=time.monotonic):
         self.users, self.anonymous, self.clock = users, anonymous, clock
         self.sessions, self.lock = {}, threading.Lock()
-        self.tries = Bucket(per_s=1.0 / 12.0, burst=5)  # wrong logins, by address and by name
+        self.tries = Bucket(per_s=1.0 / 12.0, burst=5)  # logins: wrong ones by address, all by name
         self.seen_tokens = {}                           # digest of a token that fitted: name, so that scrypt runs once
 
     def login(self, name, password, address):
         """(id of a session, why not)."""
         if not (isinstance(name, str) and isinstance(password, str) and len(name) <= 64 and len(password) <= 256):
             return None, "expected a name and a password"
-        buckets = (("address", address), ("name", name))
-        if not all(self.tries.take(key, self.clock()) for key in buckets):
+        if not (self.tries.take(("address", address), self.clock()) and self.tries.take(("name", name), self.clock())):
             return None, "too many tries: wait a minute"
         user = self.users.get(name, {})
         right = fits(password, user.get("password", NOBODY))
         if not right or "password" not in user:
             return None, "name or password is wrong"
-        for key in buckets:
-            self.tries.give_back(key)
+        self.tries.give_back(("address", address))
         key, now = secrets.token_urlsafe(32), self.clock()
         with self.lock:
             self._sweep(now)

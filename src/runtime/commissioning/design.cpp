@@ -149,7 +149,8 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
   o.gain.setZero(n_y, n_u);
   for (Index i = 0; i < n_y; ++i)
     for (Index j = 0; j < n_u; ++j) o.gain(i, j) = effect(i, j);
-  o.disturbance = models.disturbance_moves;
+  // What the disturbances that are measured do to a held output, in parts of what they may.
+  Vector share = Vector::Zero(models.disturbance_moves.size());
   o.y_scale.resize(n_y);
   o.load = kLoadReach * (o.gain.cwiseAbs() * o.u_range.asDiagonal()).rowwise().maxCoeff();
   for (Index i = 0; i < n_y; ++i) {
@@ -163,17 +164,13 @@ Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) 
     o.y_scale[i] = std::min(kStepRoom * room, kStepReach * reach);
     if (!(o.y_scale[i] > 0.0)) o.y_scale[i] = kStepRoom * room;
     o.load[i] = std::min(o.load[i], kLoadRoom * room);
-    for (Index k = 0; k < o.disturbance.size(); ++k) {
-      const double shift = std::abs(effect(i, n_u + k)) * o.disturbance[k];
-      if (brief.held[static_cast<std::size_t>(i)] && shift > kLoadRoom * room)
-        o.disturbance[k] *= kLoadRoom * room / shift;
-    }
+    for (Index k = 0; brief.held[static_cast<std::size_t>(i)] && k < share.size(); ++k)
+      share[k] = std::max(share[k], std::abs(effect(i, n_u + k)) * models.disturbance_moves[k] /
+                                        (kLoadRoom * room));
   }
-  for (Index k = 0; k < o.disturbance.size(); ++k) {
-    double most = 0.0;
-    for (Index i = 0; i < n_y; ++i) most = std::max(most, std::abs(effect(i, n_u + k)));
-    if (!(most > 0.0)) o.disturbance[k] = 0.0;
-  }
+  o.disturbance = Vector::Zero(share.size());
+  for (Index k = 0; k < share.size(); ++k)
+    if (share[k] > 0.0) o.disturbance[k] = models.disturbance_moves[k] / std::max(share[k], 1.0);
   o.pairs = pairsOf(brief, o.y_scale.cwiseInverse().asDiagonal() * o.gain * o.u_range.asDiagonal());
   const double calm = std::max<double>(std::ceil(kCalm * o.settling / Ts), kFewestRun);
   o.stretch = static_cast<int>(std::min<double>(calm, kMostRun));

@@ -345,6 +345,11 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
     return fitProcess(inputs, record.outputs().col(static_cast<Index>(i)), names.sample_time_s,
                       params);
   };
+  const auto made = [&](const std::vector<ProcessFit>& of) {
+    ProcessModels models = modelsOf(names, of, members, brief.counted());
+    models.disturbance_moves = movesOf(record.disturbances());
+    return models;
+  };
   const auto moved = [&](const ProcessFit& fit) {
     return std::any_of(fit.elements.begin(), fit.elements.begin() + countOf(names.inputs),
                        [](const ElementEstimate& e) { return e.seen; });
@@ -355,10 +360,6 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
     require(moved(fits.back()), "output " + names.outputs[i].name,
             "an input that was seen to move it: test again");
   }
-  const auto seen = [&](ProcessModels models) {
-    models.disturbance_moves = movesOf(record.disturbances());
-    return models;
-  };
   const auto withCurves = [&](const ProcessModels& straight) {
     std::vector<ProcessFit> curved = straight.fits;
     bool any = false;
@@ -370,20 +371,20 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
       any = any || curved[i].curve;
     }
     if (!any) return straight;
-    const ProcessModels fuzzy = modelsOf(names, curved, members, brief.counted());
+    const ProcessModels fuzzy = made(curved);
     return holds(fuzzy) ? fuzzy : straight;
   };
-  const ProcessModels found = modelsOf(names, fits, members, brief.counted());
+  const ProcessModels found = made(fits);
   ProcessModels models = found;
   for (const ProcessKind kind : {ProcessKind::kUnstable, ProcessKind::kIntegrating}) {
-    if (holds(models)) return seen(withCurves(models));
+    if (holds(models)) return withCurves(models);
     params.kinds.pop_back();
     for (std::size_t i = 0; i < fits.size(); ++i)
       if (fits[i].kind == kind) fits[i] = fitted(i);
-    if (!std::all_of(fits.begin(), fits.end(), moved)) return seen(found);
-    models = modelsOf(names, fits, members, brief.counted());
+    if (!std::all_of(fits.begin(), fits.end(), moved)) return found;
+    models = made(fits);
   }
-  return seen(holds(models) ? withCurves(models) : found);
+  return holds(models) ? withCurves(models) : found;
 }
 
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
